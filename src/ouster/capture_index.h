@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The times of a capture file: its duration, and where to read after a seek.
+// Finds the duration of a capture file, and the offset at which to read on after a seek.
 #pragma once
 #include <functional>
 #include <memory>
@@ -10,31 +10,33 @@
 
 namespace lidar::ouster {
 
-/// Reads the file once, as far as calls need. Times are relative to the first datagram; a datagram
-/// out of order has the latest time so far.
+/// The times of the datagrams in a capture file. The file is read only once, and only as far as the
+/// calls need. Times are relative to the first datagram. They never decrease: if the capture time
+/// of a datagram is earlier than the latest time so far, the datagram gets the latest time.
 class CaptureIndex {
  public:
   explicit CaptureIndex(std::unique_ptr<PcapReader> reader) : reader_(std::move(reader)) {}
 
-  /// Reads up to a datagram of `time` or later, or to the end. Calls `go_on` now and then, and
-  /// returns false if `go_on` does.
+  /// Reads until a datagram of `time` or later, or until the end of the file. Calls `go_on` once
+  /// per 256 datagrams. If `go_on` returns false, stops and returns false.
   bool ReadUntil(Duration time, const std::function<bool()>& go_on);
 
-  /// The first datagram's capture time; nothing until it was read.
+  /// Returns the capture time of the first datagram, or nothing if it has not been read yet.
   std::optional<Time> first() const { return first_; }
-  /// Time from the first datagram that was read to the last.
+  /// Returns the time from the first to the latest datagram that has been read.
   Duration duration() const { return first_ ? last_ - *first_ : Duration{0}; }
-  /// Returns the offset in the file from which a reader finds all read datagrams of `time` and
-  /// later, or nothing if it must read from the front.
+  /// Returns an offset in the file. A reader that starts there finds all datagrams of `time` and
+  /// later that have been read so far. Returns nothing if the reader must start at the front of the
+  /// file.
   std::optional<std::int64_t> OffsetBefore(Duration time) const;
 
  private:
   struct Entry {
-    Duration time{};  // of the latest datagram before the offset
+    Duration time{};  // time of the latest datagram before `offset`
     std::int64_t offset = 0;
   };
 
-  std::unique_ptr<PcapReader> reader_;  // null at the end
+  std::unique_ptr<PcapReader> reader_;  // null once the end of the file is reached
   std::optional<Time> first_;
   Time last_{};
   std::vector<Entry> entries_;

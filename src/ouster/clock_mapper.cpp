@@ -27,8 +27,8 @@ void ClockMapper::Observe(std::uint64_t sensor_ns, Time arrival) {
   }
   minimum_ = std::min(minimum_, seen);
   const Duration target = std::min(minimum_, last_minimum_);
-  // The offset rises at most as fast as clocks drift. It falls by at most half of the time that
-  // passed on the sensor's clock, so that mapped times do not step back.
+  // The offset rises at most as fast as clocks drift. It falls by at most half of the time that has
+  // passed on the sensor's clock, because mapped times must not go backwards.
   const Duration elapsed = std::max(Duration{0}, arrival - last_arrival_);
   const Duration sampled = std::max(Duration{0}, SinceSensorEpoch(sensor_ns) - last_sensor_);
   offset_ =

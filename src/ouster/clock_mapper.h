@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Maps the sensor's clock to the receiver's, by the arrival of packets.
+// Maps times of the sensor's clock to the receiver's clock, by the arrival times of packets.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -8,8 +8,8 @@
 
 namespace lidar::ouster {
 
-/// Only damaged packets have times after 2096. Below this bound sums and differences of times do
-/// not overflow.
+/// The latest time that is used; it is in the year 2096, so only damaged packets have later times.
+/// Sums and differences of times up to this limit do not overflow.
 constexpr Duration kLatestTime{4'000'000'000'000'000'000};
 
 constexpr Duration SinceSensorEpoch(std::uint64_t sensor_ns) {
@@ -17,29 +17,32 @@ constexpr Duration SinceSensorEpoch(std::uint64_t sensor_ns) {
   return Duration(static_cast<std::int64_t>(sensor_ns < latest ? sensor_ns : latest));
 }
 
-/// The fastest packet shows the offset between the clocks best. So the offset is the minimum of
-/// (arrival - sampling) over the last seconds: it ignores jitter and follows drift. A jump of
-/// either clock restarts it.
+/// Estimates the offset between the sensor's clock and the receiver's clock from (arrival time -
+/// sampling time) of packets. The packet with the least delay shows the offset best, so the offset
+/// is the minimum over the last seconds. The minimum ignores jitter and follows the drift of the
+/// clocks. If either clock jumps, the estimate starts anew.
 class ClockMapper {
  public:
   enum class Mode {
-    kFollow,  // live: as described above
-    kHold,    // files: the first packet sets the offset, so that times step as the sensor's do
+    kFollow,  // for live sensors: as described above
+    // For files: the first packet sets the offset for good, so that the differences between mapped
+    // times equal the differences between the sensor's times.
+    kHold,
   };
   explicit ClockMapper(Mode mode) : mode_(mode) {}
 
   /// Notes that a packet with a column sampled at `sensor_ns` arrived at `arrival`.
   void Observe(std::uint64_t sensor_ns, Time arrival);
-  /// Returns true if Observe() would find a clock jump. If so, first call Map() for the data from
-  /// before the jump.
+  /// Returns true if Observe() with these arguments would find a clock jump and set a new offset.
+  /// In this case, call Map() for all data from before the jump first.
   bool WouldJump(std::uint64_t sensor_ns, Time arrival) const;
-  /// Lets the next packet set the offset anew.
+  /// Makes the next packet set a new offset.
   void Reset() { offset_.reset(); }
   /// Notes that the receiver's clock was put forward by `step`.
   void Shift(Duration step);
-  /// Returns true after Observe(), until Reset().
+  /// Returns true if an offset is known: after the first Observe(), and until Reset().
   bool is_set() const { return offset_.has_value(); }
-  /// Call only if is_set().
+  /// Returns the receiver's time of `sensor_ns`. Call it only if is_set() is true.
   Time Map(std::uint64_t sensor_ns) const;
 
  private:
@@ -48,9 +51,9 @@ class ClockMapper {
   static constexpr std::int64_t kMaxSlewPpm = 500;
 
   Mode mode_;
-  std::optional<Duration> offset_;  // to add to the sensor's time
-  Duration minimum_{};              // of this window
-  Duration last_minimum_{};         // of the last window
+  std::optional<Duration> offset_;  // add this to a time of the sensor
+  Duration minimum_{};              // within the current window
+  Duration last_minimum_{};         // within the window before it
   Time window_start_{};
   Time last_arrival_{};
   Duration last_sensor_{};

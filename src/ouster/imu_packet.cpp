@@ -7,7 +7,7 @@ namespace {
 constexpr std::size_t kHeaderSize = 32;
 constexpr std::size_t kNmeaSize = 100;
 constexpr std::size_t kMeasurementSize = 36;
-constexpr float kGravity = 9.80665F;  // LEGACY counts in g and degrees
+constexpr float kGravity = 9.80665F;  // LEGACY packets use g and degrees per second
 constexpr float kRadiansPerSecond = 3.14159265F / 180;
 
 std::array<float, 3> ReadVector(ByteReader* r, float scale) {

@@ -6,8 +6,8 @@
 namespace lidar::ouster {
 namespace {
 
-/// Counts brackets and strings in a pass of its own, since the parser's callback would take time
-/// that is quadratic in the number of objects.
+/// Counts brackets and strings before the text is parsed. The parser's callback could count them,
+/// too, but would take time that is quadratic in the number of objects.
 bool IsWithinBounds(std::string_view text) {
   int depth = 0;
   std::size_t items = 0;

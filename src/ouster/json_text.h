@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// JSON from a sensor or an impostor: bounded in size, depth and time.
+// Parses JSON from a sensor, or from a host that pretends to be one. Size, depth and time are
+// bounded.
 #pragma once
 #include <cstddef>
 #include <nlohmann/json_fwd.hpp>
@@ -8,16 +9,16 @@
 namespace lidar::ouster {
 
 inline constexpr int kMaxJsonDepth = 16;
-/// Limit of the number of strings, lists and objects, because each takes up to 100 times as much
-/// memory as its text.
+/// The greatest number of strings, lists and objects in a text. It is limited because each of them
+/// takes up to 100 times as much memory as its text.
 inline constexpr std::size_t kMaxJsonItems = 1U << 16;
 
-/// The value in `text`; discarded (`is_discarded()`) if the text is not JSON or exceeds the bounds
-/// above. Takes time linear in the size of the text. The result may be copied, compared and written
-/// without regard to the stack, because its depth is bounded.
+/// Parses `text`. If `text` is not JSON or exceeds the bounds above, returns a value for which
+/// `is_discarded()` is true. Takes time linear in the size of the text. The result can be copied,
+/// compared and written without a stack overflow, because its depth is bounded.
 nlohmann::json ParseJson(std::string_view text);
 
-/// The same; discarded also if the value is not an object.
+/// Parses `text` like ParseJson(), but also discards a value that is not an object.
 nlohmann::json ParseJsonObject(std::string_view text);
 
 }  // namespace lidar::ouster

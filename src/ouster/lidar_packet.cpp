@@ -6,7 +6,7 @@
 namespace lidar::ouster {
 namespace {
 
-constexpr std::size_t kLegacyFrameIdOffset = 10;  // in every column header
+constexpr std::size_t kLegacyFrameIdOffset = 10;  // offset in every column header
 
 std::uint64_t LittleAt(ByteView bytes, std::size_t offset, std::size_t n) {
   ByteReader r(bytes.Sub(offset, n));
@@ -70,7 +70,7 @@ PacketColumn LidarPacket::Column(std::uint32_t i) const {
 }
 
 bool PacketCrcCheck::Accept(ByteView packet) {
-  constexpr std::uint32_t kGiveUpAfter = 64;  // packets of a sensor that has no CRC
+  constexpr std::uint32_t kGiveUpAfter = 64;  // packets without a valid CRC
   constexpr std::size_t kCrcSize = 8;
   if (!carried_ || packet.size <= kCrcSize) return true;
   if (!seen_valid_ && unseen_ >= kGiveUpAfter) return true;

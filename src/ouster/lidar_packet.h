@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Reads a lidar packet, of which only the size is checked.
+// Reads the fields of a lidar packet. Only the size of the packet is checked.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -16,7 +16,7 @@ struct PacketHeader {
   std::uint64_t serial = 0;   // 0: unknown
 };
 
-/// A measurement block.
+/// A measurement block of a packet: the pixels of one column.
 struct PacketColumn {
   std::uint64_t timestamp = 0;  // ns of the sensor's clock
   std::uint32_t measurement_id = 0;
@@ -43,13 +43,13 @@ class ChannelReader {
   }
 
  private:
-  std::uint32_t word_;  // byte offset
+  std::uint32_t word_;  // offset in the pixel [bytes]
   std::uint32_t shift_;
   std::uint32_t scale_shift_;
   std::uint32_t mask_;
 };
 
-/// A view; the bytes must outlive it.
+/// A view of a lidar packet. The packet's bytes must outlive it.
 class LidarPacket {
  public:
   /// Returns nothing unless `bytes` are exactly one packet of `format`.
@@ -57,7 +57,7 @@ class LidarPacket {
 
   const PacketHeader& header() const { return header_; }
   std::uint32_t columns() const { return format_.columns_per_packet; }
-  /// `i` < columns()
+  /// Requires `i` < columns().
   PacketColumn Column(std::uint32_t i) const;
 
  private:
@@ -68,16 +68,17 @@ class LidarPacket {
   PacketHeader header_;
 };
 
-/// The header of a packet of any size, such as that of a sensor in another mode. Returns nothing
-/// for LEGACY packets, which have no header, and for bytes too short to hold one.
+/// Returns the header of a packet of any size, for example of a packet from a sensor in another
+/// mode. Returns nothing for LEGACY packets, which have no header, and for bytes that are too
+/// short.
 std::optional<PacketHeader> PeekHeader(ByteView bytes, const PacketFormat& format);
 
-/// Firmware before 2.4 and FUSA packets have a constant in place of a CRC-64. So a mismatch means
-/// damage only after a packet of the same sensor has matched.
+/// Checks the CRC-64 of packets. Firmware before 2.4 and FUSA packets have a constant in place of
+/// the CRC. So a wrong CRC means damage only if an earlier packet of the sensor had a correct CRC.
 class PacketCrcCheck {
  public:
   explicit PacketCrcCheck(const PacketFormat& format) : carried_(!format.is_legacy()) {}
-  /// Returns false for a damaged packet.
+  /// Returns false if the packet is damaged.
   bool Accept(ByteView packet);
 
  private:

@@ -6,7 +6,8 @@
 namespace lidar::ouster {
 namespace {
 
-/// Skips white space and comments, then reads a number. Returns nothing if there is none.
+/// Skips white space and comments, then reads a number and removes it from `text`. Returns nothing
+/// if no number follows.
 std::optional<std::uint32_t> ReadNumber(ByteView* text) {
   std::size_t at = 0;
   bool comment = false;
@@ -42,7 +43,7 @@ std::optional<PixelMask> ParseMaskImage(ByteView pgm, const Metadata& metadata,
     *error = "the mask is not a binary PGM image with 8 bits a pixel";
     return std::nullopt;
   }
-  rest = rest.Sub(1);  // a single white space ends the header
+  rest = rest.Sub(1);  // skips the single white space that ends the header
   if (*width != columns || *height != beams || rest.size < pixels) {
     *error = "the mask must have " + std::to_string(columns) + " x " + std::to_string(beams) +
              " pixels, as the sensor's scans";

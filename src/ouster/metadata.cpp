@@ -18,9 +18,9 @@ constexpr double kMaxAngleDeg = 720;
 constexpr double kMaxTranslationMm = 100'000;
 constexpr double kSlowestScans = 0.1;  // scans per second
 constexpr double kFastestScans = 100;
-constexpr std::size_t kMaxPixels = std::size_t{1} << 22;  // per scan; bounds its memory
+constexpr std::size_t kMaxPixels = std::size_t{1} << 22;  // per scan; bounds the memory of a scan
 
-/// Finds a key in its section, or at the top level, where the flat layout has it.
+/// Finds a key in its section, or at the top level, where the flat layout has all keys.
 class Document {
  public:
   explicit Document(const json& root) : root_(root) {}
@@ -33,7 +33,7 @@ class Document {
     const json* v = Find(section, key);
     return v != nullptr && v->is_string() ? v->get<std::string>() : std::string();
   }
-  /// Returns nothing if the key is missing or no number within [0, max].
+  /// Returns nothing if the key is missing, or if its value is not a number within [0, max].
   std::optional<double> Number(const char* section, const char* key, double max) const {
     const json* v = Find(section, key);
     if (v == nullptr || !v->is_number()) return std::nullopt;
@@ -55,7 +55,7 @@ class Document {
   }
   const json* Section(const char* name) const {
     const json* section = Member(&root_, name);
-    // The flat layout has one section with another name.
+    // The flat layout calls this section "data_format".
     return section == nullptr && std::string_view(name) == "lidar_data_format"
                ? Member(&root_, "data_format")
                : section;
@@ -75,7 +75,7 @@ struct LidarMode {
   std::uint32_t columns = 0;
   double scans_per_second = 0;
 };
-/// "1024x10".
+/// Parses a text such as "1024x10".
 std::optional<LidarMode> ParseLidarMode(std::string_view text) {
   const std::size_t x = text.find('x');
   if (x == std::string_view::npos) return std::nullopt;
@@ -85,7 +85,8 @@ std::optional<LidarMode> ParseLidarMode(std::string_view text) {
   return LidarMode{*columns, static_cast<double>(*rate)};
 }
 
-/// Returns the default of |beam_to_lidar| by product line.
+/// Returns the distance from the lidar's origin to the beams' origin [mm] for metadata without it.
+/// The distance depends on the product line.
 double DefaultBeamOriginMm(std::string_view product_line) {
   if (product_line.rfind("OS-0-", 0) == 0) return 27.67;
   if (product_line.rfind("OS-1-", 0) == 0) return 15.806;
@@ -93,7 +94,7 @@ double DefaultBeamOriginMm(std::string_view product_line) {
   return 12.163;
 }
 
-/// Builds Metadata step by step; the first step that fails names the error.
+/// Builds Metadata step by step. The first step that fails sets the error.
 class Builder {
  public:
   explicit Builder(const json& root) : document_(root) {}
@@ -148,7 +149,7 @@ class Builder {
     return true;
   }
 
-  /// Returns `missing` for a missing key, and 0 for a wrong value.
+  /// Returns `missing` if the key is missing, and 0 if its value is wrong.
   std::uint32_t CountOr(const char* key, std::size_t missing, std::uint32_t max) const {
     if (document_.Find(kFormat, key) != nullptr)
       return document_.Count(kFormat, key, max).value_or(0);
@@ -216,7 +217,8 @@ class Builder {
     return true;
   }
 
-  /// Reads an angle per beam, or a list per beam with an angle per column.
+  /// Reads a list with one entry for each beam. An entry is an angle, or a list with one angle for
+  /// each column.
   bool ReadAngleList(const char* key, std::vector<float>* angles, bool* per_pixel) {
     const json* list = document_.Find(kBeams, key);
     const std::string name = std::string("beam_intrinsics.") + key;
@@ -257,7 +259,7 @@ class Builder {
     const std::size_t per_beam = altitude_per_pixel ? m_.model.columns_per_scan : 1;
     m_.model.beams.resize(m_.format.beams);
     for (std::size_t i = 0; i < m_.model.beams.size(); ++i) {
-      // Represents a beam with many angles by its middle column.
+      // A beam with one angle for each column is represented by the angle of its middle column.
       const std::size_t at = i * per_beam + per_beam / 2;
       m_.model.beams[i].azimuth_deg = static_cast<double>(angles.azimuth_deg[at]);
       m_.model.beams[i].altitude_deg = static_cast<double>(angles.altitude_deg[at]);
@@ -280,7 +282,8 @@ class Builder {
     return true;
   }
 
-  /// Converts millimetres to metres. A missing transform leaves `out` unchanged.
+  /// Reads a transform and converts its translation from millimetres to metres. If the transform is
+  /// missing, leaves `out` unchanged.
   bool ReadTransform(const char* section, const char* key, Transform* out) {
     const json* list = document_.Find(section, key);
     if (list == nullptr || list->is_null()) return true;

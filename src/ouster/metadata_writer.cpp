@@ -96,7 +96,7 @@ std::string WriteMetadata(const Metadata& m) {
       {"lidar_intrinsics",
        {{"lidar_to_sensor_transform", TransformInMillimetres(m.model.lidar_to_sensor)}}},
       {"imu_intrinsics", {{"imu_to_sensor_transform", TransformInMillimetres(m.imu_to_sensor)}}}};
-  // A port of 0 would say that the stream is switched off.
+  // The ports are left out if they are 0, because port 0 means that the stream is switched off.
   if (m.lidar_port != 0) root["config_params"]["udp_port_lidar"] = m.lidar_port;
   if (m.imu_port != 0) root["config_params"]["udp_port_imu"] = m.imu_port;
   return root.dump(2) + "\n";

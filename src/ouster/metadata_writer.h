@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Metadata JSON for sensors that exist in software only.
+// Writes metadata JSON for sensors that exist in software only.
 #pragma once
 #include <string>
 
@@ -7,7 +7,7 @@
 
 namespace lidar::ouster {
 
-/// Writes the sections of firmware 2.0 and later; ParseMetadata reads it back.
+/// Writes the layout with sections of firmware 2.0 and later. ParseMetadata() can read the result.
 std::string WriteMetadata(const Metadata& metadata);
 
 }  // namespace lidar::ouster

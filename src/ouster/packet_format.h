@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The layout of lidar packets: a table of profiles for parser and writer.
+// The layout of lidar packets, as a table of profiles that the parser and the writer share.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace lidar::ouster {
 
-/// `udp_profile_lidar`.
+/// The values of `udp_profile_lidar`.
 enum class Profile {
   kLegacy,
   kRng19Rfl8Sig16Nir16,
@@ -28,10 +28,10 @@ enum class Profile {
 };
 constexpr std::size_t kProfileCount = 14;
 
-/// `header_type`; LEGACY packets have neither.
+/// The values of `header_type`. LEGACY packets have no header.
 enum class HeaderType { kStandard, kFusa };
 
-/// The channels of a pixel. R, G and B are half floats; the others are integers.
+/// The channels of a pixel. R, G and B are half-precision floats; all others are integers.
 enum class Channel {
   kRange,
   kReflectivity,
@@ -50,15 +50,15 @@ enum class Channel {
 };
 constexpr std::size_t kChannelCount = 14;
 
-/// A channel inside a pixel. No channel crosses a 32-bit word of the pixel.
+/// The position of a channel in a pixel. No channel crosses the boundary of a 32-bit word.
 struct ChannelBits {
   Channel channel;
-  std::uint8_t first_bit;  // from the least significant bit of the pixel's first byte
+  std::uint8_t first_bit;  // counted from the least significant bit of the pixel's first byte
   std::uint8_t bits;
-  std::uint8_t scale_shift = 0;  // the packet leaves out this many low bits of the value
+  std::uint8_t scale_shift = 0;  // number of low bits of the value that are not in the packet
 };
 
-/// The channels of a pixel, in order of their bits.
+/// The channels of a pixel, in the order of their first bits.
 struct PixelLayout {
   const ChannelBits* first = nullptr;
   std::size_t count = 0;
@@ -66,17 +66,17 @@ struct PixelLayout {
 
   const ChannelBits* begin() const { return first; }
   const ChannelBits* end() const { return first + count; }
-  /// Null if the profile has no such channel.
+  /// Returns null if the profile does not have the channel.
   const ChannelBits* Find(Channel channel) const;
 };
 
 std::string_view ToString(Profile profile);
-/// Returns nothing for a profile outside of this table.
+/// Returns nothing if the table has no profile of this name.
 std::optional<Profile> ProfileFromString(std::string_view name);
 std::string_view ToString(Channel channel);
 PixelLayout LayoutOf(Profile profile);
 
-/// Offsets and sizes in bytes of one lidar packet.
+/// The offsets and sizes in a lidar packet [bytes].
 struct PacketFormat {
   Profile profile = Profile::kLegacy;
   HeaderType header = HeaderType::kStandard;
@@ -93,23 +93,23 @@ struct PacketFormat {
   std::size_t column_size() const {
     return column_header_size() + beams * pixel_size() + column_footer_size();
   }
-  /// 0 for profile OFF.
+  /// Returns 0 for the profile OFF.
   std::size_t packet_size() const;
-  /// Frame ids count modulo this.
+  /// Frame ids are counted modulo this number.
   std::uint64_t frame_id_modulus() const { return std::uint64_t{1} << (is_fusa() ? 32 : 16); }
-  /// Range channels count in this many millimetres.
+  /// The unit of the range channels [mm].
   std::uint32_t range_unit_mm() const;
   bool has_second_return() const;
 
-  static constexpr std::size_t kMaxPacketSize = 65507;  // what UDP over IPv4 carries
+  static constexpr std::size_t kMaxPacketSize = 65507;  // greatest payload of UDP over IPv4
 };
 
-/// Byte offsets in a packet header that is not LEGACY's.
+/// The offsets in the header of a packet that is not LEGACY [bytes].
 struct HeaderLayout {
-  std::uint8_t type_bytes;  // the type stands first
+  std::uint8_t type_bytes;  // size of the type, which is at offset 0
   std::uint8_t frame_id, frame_id_bytes;
-  std::uint8_t init_id;  // 3 bytes
-  std::uint8_t serial;   // 5 bytes
+  std::uint8_t init_id;  // this field has 3 bytes
+  std::uint8_t serial;   // this field has 5 bytes
 };
 constexpr HeaderLayout kStandardHeader{2, 2, 2, 4, 7};
 constexpr HeaderLayout kFusaHeader{1, 4, 4, 1, 11};

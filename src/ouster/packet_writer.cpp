@@ -10,15 +10,15 @@ namespace {
 
 constexpr std::size_t kCrcSize = 8;
 constexpr std::size_t kMeasurementIdOffset = 8;
-constexpr std::size_t kStatusOffset = 10;  // LEGACY has the frame id here, and its status last
+constexpr std::size_t kStatusOffset = 10;  // LEGACY has the frame id here, the status at the end
 constexpr std::size_t kEncoderOffset = 12;
-constexpr std::uint32_t kEncoderTicks = 90112;  // a turn of LEGACY's encoder
+constexpr std::uint32_t kEncoderTicks = 90112;  // one revolution of the encoder, in LEGACY packets
 
 void PutLittle(std::uint8_t* at, std::uint64_t value, std::size_t n) {
   for (std::size_t i = 0; i < n; ++i) at[i] = static_cast<std::uint8_t>(value >> (8 * i));
 }
 
-/// Replaces `bits` bits from bit `first` on, byte by byte.
+/// Writes the low `bits` bits of `value` into the pixel, starting at its bit `first`.
 void PutBits(std::uint8_t* pixel, unsigned first, unsigned bits, std::uint32_t value) {
   while (bits > 0) {
     const unsigned shift = first % 8;

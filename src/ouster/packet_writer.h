@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Writes lidar packets for software sensors, converted recordings and tests. It shares only the
-// format's description with the parser.
+// Writes lidar packets for software sensors, converted recordings and tests. The writer shares only
+// the description of the format with the parser.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -18,22 +18,24 @@ class PacketWriter {
  public:
   PacketWriter(const PacketFormat& format, const PacketIdentity& identity);
 
-  /// Starts a packet; every pixel is zero and every column invalid.
+  /// Starts a packet in which every pixel is zero and every column is invalid.
   void Begin(std::uint32_t frame_id);
   struct ColumnHeader {
     std::uint64_t timestamp = 0;  // ns
     std::uint16_t measurement_id = 0;
     bool valid = true;
   };
-  /// `column` counts within the packet.
+  /// `column` is counted from the first column of the packet.
   void SetColumn(std::uint32_t column, const ColumnHeader& header);
   struct Pixel {
     std::uint32_t column = 0;
     std::uint32_t beam = 0;
   };
-  /// Keeps the bits of `value` that fit the channel. Does nothing if the profile lacks the channel.
+  /// Writes as many low bits of `value` as the channel has. Does nothing if the profile does not
+  /// have the channel.
   void SetPixel(Pixel at, Channel channel, std::uint32_t value);
-  /// Returns the packet, with its CRC if the format has one. It is valid until the next Begin().
+  /// Returns the packet, with a CRC if the format has one. The result is valid until the next
+  /// Begin().
   const std::vector<std::uint8_t>& Finish();
 
  private:

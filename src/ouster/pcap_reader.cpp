@@ -13,10 +13,10 @@
 namespace lidar::ouster {
 namespace {
 
-// Version of classic pcap; libpcap reports another one for pcapng.
+// The major version of classic pcap files. For pcapng files libpcap reports another version.
 constexpr int kClassicVersion = 2;
 
-/// libpcap's DLT_ number for LINKTYPE_RAW differs from the file's.
+/// libpcap's number for raw IP (DLT_RAW) differs from the number in the file (LINKTYPE_RAW).
 LinkType FromDlt(int dlt) { return dlt == DLT_RAW ? LinkType::kRaw : static_cast<LinkType>(dlt); }
 
 pcap* OpenFile(const std::string& path, std::string* error) {
@@ -57,7 +57,8 @@ std::optional<PcapReader::Captured> PcapReader::Next() {
     const int got = pcap_next_ex(handle_.get(), &header, &frame);
     if (got == PCAP_ERROR) error_ = pcap_geterr(handle_.get());
     if (got != 1) return std::nullopt;
-    // pcapng has 64 bits of time, in a unit of its choice.
+    // A pcapng file has 64 bits for a time, in a unit of its own, so a damaged file may have times
+    // that would overflow below.
     const auto latest = std::chrono::duration_cast<std::chrono::seconds>(kLatestTime).count();
     const auto seconds = std::clamp<std::int64_t>(header->ts.tv_sec, 0, latest);
     // The file was opened with nanosecond precision, so tv_usec holds nanoseconds.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The UDP datagrams of a capture file (pcap or pcapng), through libpcap.
+// Reads UDP datagrams from a capture file (pcap or pcapng), with libpcap.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -20,19 +20,20 @@ class PcapReader {
 
   struct Captured {
     UdpDatagram datagram;
-    Time time;  // of the capture, since the Unix epoch
+    Time time;  // capture time, since the Unix epoch
   };
-  /// Returns nothing at the end of the file, or if it is damaged; error() then has the reason.
+  /// Returns the next datagram, or nothing at the end of the file. Also returns nothing if the file
+  /// is damaged; error() then returns the reason.
   std::optional<Captured> Next();
-  /// Empty unless the file ended in the middle of a packet or is damaged.
+  /// Returns an empty text unless the file is damaged or ends in the middle of a packet.
   const std::string& error() const { return error_; }
-  /// Goes back to the first packet. Returns false if the file is gone.
+  /// Goes back to the first packet. Returns false if the file can no longer be opened.
   bool Rewind();
 
-  /// Returns the offset of the next frame, for GoTo() of any reader of this file. Returns nothing
-  /// for pcapng, whose frames need the blocks before them.
+  /// Returns the offset of the next frame, which GoTo() of any reader of this file accepts. Returns
+  /// nothing for pcapng files, because their frames can be read only after the blocks before them.
   std::optional<std::int64_t> Offset() const;
-  /// Makes Next() continue at `offset`. Returns false on failure; the position is then undefined.
+  /// Makes Next() continue at `offset`. If it fails, returns false, and the position is undefined.
   bool GoTo(std::int64_t offset);
 
  private:

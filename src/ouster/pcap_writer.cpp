@@ -17,7 +17,7 @@ constexpr std::size_t kMaxPayload = 65'507;
 constexpr std::uint32_t kSensor = 0x0a000002;    // 10.0.0.2
 constexpr std::uint32_t kReceiver = 0x0a000001;  // 10.0.0.1
 
-/// Removes regular files only, no device or pipe.
+/// Removes the file if it is a regular file. A device or a pipe is left alone.
 void RemoveFile(const std::string& path) {
   std::error_code ignored;
   if (std::filesystem::is_regular_file(path, ignored)) std::filesystem::remove(path, ignored);
@@ -90,9 +90,10 @@ bool PcapWriter::Write(Time captured, std::uint16_t port, ByteView payload) {
   const std::int64_t ns = captured.time_since_epoch().count();
   pcap_pkthdr header{};
   header.ts.tv_sec = ns / kNsPerSecond;
-  header.ts.tv_usec = ns % kNsPerSecond;  // nanoseconds, as the precision says
+  // The file was opened with nanosecond precision, so tv_usec holds nanoseconds.
+  header.ts.tv_usec = ns % kNsPerSecond;
   header.caplen = header.len = static_cast<bpf_u_int32>(frame.size());
-  // libpcap passes the file through its callback's argument.
+  // pcap_dump() has the signature of a pcap callback, so the file is its first argument.
   pcap_dump(reinterpret_cast<u_char*>(dumper_), &header, frame.data());
   return std::ferror(pcap_dump_file(dumper_)) == 0;
 }

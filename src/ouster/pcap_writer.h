@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Writes UDP datagrams to a capture file, through libpcap.
+// Writes UDP datagrams to a capture file, with libpcap.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -22,11 +22,11 @@ class PcapWriter {
   PcapWriter(const PcapWriter&) = delete;
   PcapWriter& operator=(const PcapWriter&) = delete;
 
-  /// Writes an Ethernet frame with IPv4 of any size. Returns false if the disk is full, or if the
-  /// payload is too large for UDP.
+  /// Writes the payload as a UDP datagram in IPv4 in one Ethernet frame, which may be larger than
+  /// Ethernet allows. Returns false if the disk is full, or if the payload is too large for UDP.
   bool Write(Time captured, std::uint16_t port, ByteView payload);
-  /// Call this at the end. Returns false if the disk is full. A capture that is not closed
-  /// successfully is removed.
+  /// Finishes the file; call this at the end. Returns false if the disk is full. A capture that was
+  /// not closed successfully is removed.
   bool Close();
 
  private:
@@ -35,7 +35,7 @@ class PcapWriter {
 
   const std::string path_;
   pcap* handle_;
-  pcap_dumper* dumper_;  // null once it is closed
+  pcap_dumper* dumper_;  // null after Close()
 };
 
 }  // namespace lidar::ouster

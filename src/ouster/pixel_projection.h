@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Converts ranges to points for sensors with turning beams and for sensors with angles per pixel.
+// Converts ranges to points. Supports sensors with turning beams and sensors with an angle per
+// pixel.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -11,12 +12,12 @@
 
 namespace lidar::ouster {
 
-/// Immutable, so threads may share one.
+/// The projection of a sensor. It is immutable, so several threads may use the same object.
 class PixelProjection {
  public:
   explicit PixelProjection(const Metadata& metadata);
 
-  /// x, y, z [m] of one return at `range_mm`, which is not 0.
+  /// Returns x, y and z [m] of a return at `range_mm`, which must not be 0.
   std::array<float, 3> Point(std::uint32_t beam, std::uint32_t column,
                              std::uint32_t range_mm) const {
     if (spinning_) return spinning_->Point(beam, column, range_mm);
@@ -24,7 +25,7 @@ class PixelProjection {
     const float r = static_cast<float>(range_mm) * 1e-3F - beam_origin_m_;
     return {r * d[0] + offset_[0], r * d[1] + offset_[1], r * d[2] + offset_[2]};
   }
-  /// Unit vector along which a range moves its point.
+  /// Returns the unit vector along which the point moves if its range grows.
   std::array<float, 3> Direction(std::uint32_t beam, std::uint32_t column) const;
 
  private:
@@ -33,8 +34,8 @@ class PixelProjection {
   std::optional<RangeProjection> spinning_;
   std::uint32_t columns_ = 0;
   std::vector<Vector> directions_;  // beams x columns, row-major
-  Vector offset_{};                 // of the beams' origin, in metres
-  float beam_origin_m_ = 0;         // |beam_to_lidar|
+  Vector offset_{};                 // position of the beams' origin in the sensor frame [m]
+  float beam_origin_m_ = 0;         // length of the vector beam_to_lidar [m]
 };
 
 }  // namespace lidar::ouster

@@ -17,8 +17,8 @@ constexpr std::size_t kRangeOffset = 16;
 constexpr std::size_t kRange2Offset = 20;
 constexpr std::size_t kIntensity2Offset = 24;
 
-/// Channels that come from a pixel of the packet; `second` is the same channel of the second
-/// return.
+/// A channel that is copied from a pixel of the packet. `second` is the corresponding channel of
+/// the second return.
 struct PixelChannel {
   std::string_view name;
   Channel channel;
@@ -33,7 +33,7 @@ constexpr std::array<PixelChannel, 5> kPixelChannels = {{
 }};
 constexpr std::string_view kRing = "ring";
 constexpr std::string_view kTime = "t";
-constexpr std::string_view kRange = "range";  // always there
+constexpr std::string_view kRange = "range";  // a field of every point
 
 const PixelChannel* FindPixelChannel(std::string_view name) {
   const auto* found = std::find_if(kPixelChannels.begin(), kPixelChannels.end(),

@@ -20,8 +20,9 @@ namespace lidar::ouster {
 enum class Return { kStrongest, kSecond, kBoth };
 enum class Invalid { kZero, kNan };
 
-/// A span of azimuth in the sensor frame [degrees, from x towards y, so counter-clockwise seen from
-/// above]; it wraps if the last angle is below the first.
+/// An interval of azimuths in the sensor frame [degrees]. Azimuths grow from x towards y, which is
+/// counter-clockwise if seen from above. If `last_deg` is less than `first_deg`, the sector
+/// contains 0 degrees.
 struct Sector {
   double first_deg = 0;
   double last_deg = 360;
@@ -29,29 +30,30 @@ struct Sector {
 
 struct PointOptions {
   Return returns = Return::kStrongest;
-  std::vector<std::string> channels;  // in the form of ParseChannels()
+  std::vector<std::string> channels;  // as returned by ParseChannels()
   double min_range_m = 0;
-  double max_range_m = 0;                // 0: no limit
-  std::vector<Sector> sectors;           // empty: all
-  std::vector<std::uint8_t> mask_image;  // a file for ParseMaskImage; empty: keep all
+  double max_range_m = 0;                // 0 for no limit
+  std::vector<Sector> sectors;           // empty: keep all azimuths
+  std::vector<std::uint8_t> mask_image;  // the bytes of a PGM file; empty: keep all pixels
   Invalid invalid = Invalid::kZero;
-  bool destagger = false;  // only for slices of a whole scan
+  bool destagger = false;  // only if a slice is a whole scan
 };
 
-/// Parses "reflectivity, ring". Returns nothing and sets `error` for an unknown channel. Doubled
-/// names count once.
+/// Parses a list of names such as "reflectivity, ring". Returns nothing and sets `error` if a
+/// channel is unknown. A name that is listed twice is used once.
 std::optional<std::vector<std::string>> ParseChannels(std::string_view text, std::string* error);
 
-/// Reads "0-90,270-360" [degrees].
+/// Parses a list of sectors such as "0-90,270-360" [degrees].
 std::optional<std::vector<Sector>> ParseSectors(std::string_view text);
 
-/// A point is x, y, z, intensity (F32, intensity being the reflectivity), range (U32, mm), then the
-/// second return and the extra channels. A pixel without a return has zeros (or NaN) for its
-/// geometry and intensity; extra channels keep what the sensor measured (ambient light needs no
-/// return).
+/// Writes the points of a cloud. A point has the fields x, y, z and intensity (F32; the intensity
+/// is the reflectivity) and range (U32, mm), followed by the second return and the extra channels.
+/// If a pixel has no return, its intensity is 0, and its geometry is 0 or NaN. Its extra channels
+/// still have the values that the sensor measured, because for example ambient light is measured
+/// without a return.
 class PointWriter {
  public:
-  /// Returns nothing and sets `error` if the profile lacks something that the options ask for.
+  /// Returns nothing and sets `error` if the options need a channel that the profile does not have.
   static std::optional<PointWriter> Create(const Metadata& metadata, const PointOptions& options,
                                            std::string* error);
 
@@ -59,14 +61,14 @@ class PointWriter {
   std::uint32_t point_step() const { return point_step_; }
 
   struct Target {
-    std::uint8_t* points = nullptr;  // of the slice, zeroed
-    std::uint32_t width = 0;         // columns of the slice
+    std::uint8_t* points = nullptr;  // the zeroed points of the slice
+    std::uint32_t width = 0;         // number of columns in the slice
     std::uint32_t first_column = 0;
     std::uint64_t start = 0;  // time of the slice's first column [ns]
   };
-  /// Writes one valid column that lies in the slice.
+  /// Writes the points of a column, which must be valid and belong to the slice.
   void WriteColumn(const PacketColumn& column, const Target& target) const;
-  /// Fills points with missing returns.
+  /// Sets all points to missing returns.
   void FillMissing(std::vector<std::uint8_t>* points) const;
 
  private:
@@ -95,13 +97,13 @@ class PointWriter {
   std::shared_ptr<const PixelProjection> projection_;
   std::optional<ChannelReader> range_;
   std::optional<ChannelReader> intensity_;
-  std::optional<ChannelReader> range2_;  // of the second return, if both are wanted
+  std::optional<ChannelReader> range2_;  // reads the second return, if both returns are wanted
   std::optional<ChannelReader> intensity2_;
   std::vector<Extra> extras_;
   std::uint32_t min_range_mm_ = 0;
   std::uint32_t max_range_mm_ = 0;
-  PixelMask mask_;                     // sectors included; empty: keep all
-  std::vector<std::uint32_t> shifts_;  // columns to the right, for each beam; may be empty
+  PixelMask mask_;                     // includes the sectors; empty: keep all pixels
+  std::vector<std::uint32_t> shifts_;  // shift to the right [columns] of each beam; empty: none
   Invalid invalid_ = Invalid::kZero;
 };
 

@@ -9,8 +9,9 @@
 namespace lidar::ouster {
 namespace {
 
-// A packet that is further ahead, or from the past, is accepted only if others like it follow,
-// because a single damaged frame id must not discard a scan.
+// The frame id of a single packet may be damaged, and must not discard a scan. So a packet that is
+// further ahead than kMaxScansAhead, or more than one scan behind, is a stray. Only if
+// kStraysForRestart strays arrive in a row does the batcher restart with their scan.
 constexpr std::int64_t kMaxScansAhead = 8;
 constexpr std::uint32_t kStraysForRestart = 4;
 constexpr std::size_t kRememberedLosses = 256;
@@ -41,7 +42,8 @@ bool ScanBatcher::LeadsPacket(std::uint32_t column) const {
   return column % columns_per_packet_ == 0 || column == window_.first;
 }
 
-/// Returns the number of scans from the newest one to the packet's.
+/// Returns the number of scans by which the packet is ahead of the newest scan; negative if the
+/// packet belongs to an earlier scan.
 std::int64_t ScanBatcher::Locate(const PacketHeader& header) {
   const auto modulus = static_cast<std::int64_t>(frame_id_modulus_);
   std::int64_t distance = (std::int64_t{header.frame_id} - *frame_id_) % modulus;
@@ -169,7 +171,7 @@ void ScanBatcher::CountLaterPacket(Key key) {
     if (open.key < key) ++open.later_packets;
 }
 
-/// Returns the first slice that is not given out yet and has columns in the sensor's window.
+/// Returns the first slice that is not given out yet and that has columns in the sensor's window.
 ScanBatcher::Key ScanBatcher::NextExpected() const {
   Key key = std::max(next_, joined_key_);
   while (expected_[static_cast<std::size_t>(key % slices_)] == 0) ++key;
@@ -179,7 +181,8 @@ ScanBatcher::Key ScanBatcher::NextExpected() const {
 bool ScanBatcher::IsReady(const OpenSlice& open) const {
   if (open.later_packets >= reorder_packets_) return true;
   if (open.seen < expected_[static_cast<std::size_t>(open.key % slices_)]) return false;
-  // Packets of earlier slices that are wholly missing may still be under way.
+  // Packets of an earlier slice may still be on their way, even if no packet of that slice has
+  // arrived yet.
   return open.key <= NextExpected() || open.packets >= reorder_packets_;
 }
 
@@ -219,7 +222,7 @@ void ScanBatcher::GiveOut(OpenSlice open) {
   }
 }
 
-/// Gives out blanks for slices in [first, last) outside of the sensor's window.
+/// Gives out blank slices for all slices in [first, last) that are outside the sensor's window.
 void ScanBatcher::GiveOutBlanks(Key first, Key last, ColumnTime reference) {
   for (Key key = first; key < last; ++key) {
     const auto index = static_cast<std::uint32_t>(key % slices_);
@@ -232,7 +235,7 @@ void ScanBatcher::GiveOutBlanks(Key first, Key last, ColumnTime reference) {
   }
 }
 
-/// Extrapolates from `reference` to the time of the slice's first column.
+/// Returns the time of the slice's first column, extrapolated from the time of `reference`.
 std::uint64_t ScanBatcher::StartOf(Key key, const ColumnTime& reference) const {
   const auto columns = static_cast<double>(key * width_ - reference.column);
   const auto shift = static_cast<std::int64_t>(columns * column_period_);
@@ -240,8 +243,8 @@ std::uint64_t ScanBatcher::StartOf(Key key, const ColumnTime& reference) const {
       std::max<std::int64_t>(0, SinceSensorEpoch(reference.time).count() + shift));
 }
 
-/// Adds the lost packets whose first column is in the slice; `columns` is null if no column of the
-/// slice came.
+/// Counts the lost packets whose first column is in the slice. If no column of the slice arrived,
+/// `columns` is null.
 void ScanBatcher::CountLost(Key key, const std::vector<bool>* columns) {
   const std::int64_t scan = key / slices_;
   const auto first = static_cast<std::uint32_t>(key % slices_) * width_;
@@ -258,7 +261,8 @@ void ScanBatcher::CountLost(Key key, const std::vector<bool>* columns) {
   }
 }
 
-/// Counts a packet that came after its slice: it was counted as lost, or is a duplicate.
+/// Counts a packet that arrived after its slice was given out. The packet is either one that was
+/// counted as lost, or a duplicate.
 void ScanBatcher::CountTooLate(std::int64_t scan, std::uint32_t column) {
   const auto found = std::find(lost_.begin(), lost_.end(), scan * columns_per_scan_ + column);
   if (found == lost_.end()) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Assembles lidar packets into slices of points, each as soon as its columns are complete.
+// Assembles lidar packets into slices of points. A slice is ready as soon as its columns are
+// complete.
 #pragma once
 #include <cstdint>
 #include <deque>
@@ -13,45 +14,46 @@
 
 namespace lidar::ouster {
 
-/// An azimuth sector of a scan, beam by beam. Columns that are outside the sensor's window or were
-/// lost are missing returns, so the width is always the same.
+/// An azimuth sector of a scan, row by row; a row has the points of one beam. All slices have the
+/// same width: columns that were lost, or that are outside the sensor's window, have missing
+/// returns.
 struct Slice {
-  std::uint32_t scan_id = 0;  // counts scans, across restarts of the sensor
+  std::uint32_t scan_id = 0;  // number of the scan; it increases even if the sensor restarts
   std::uint32_t index = 0;
   std::uint32_t count = 0;
   std::uint32_t first_column = 0;
   std::uint32_t width = 0;
-  std::uint64_t start = 0;  // ns of the sensor's clock, of the first column
-  Time first_arrival{};     // of its first packet
+  std::uint64_t start = 0;  // time of the first column by the sensor's clock [ns]
+  Time first_arrival{};     // arrival of the slice's first packet
   std::uint32_t missing_columns = 0;
-  bool after_gap = false;  // a slice before this one is missing, or the sensor restarted
+  bool after_gap = false;  // a slice before this slice is missing, or the sensor restarted
   std::vector<std::uint8_t> points;
 };
 
 struct BatcherStats {
   std::uint64_t packets = 0;
-  std::uint64_t lost_packets = 0;  // packets that never came
-  std::uint64_t late_packets = 0;  // came after their slice was given out
+  std::uint64_t lost_packets = 0;  // packets that never arrived
+  std::uint64_t late_packets = 0;  // packets that arrived after their slice was given out
   std::uint64_t duplicate_packets = 0;
-  std::uint64_t stray_packets = 0;  // of a distant scan; enough of them count as a restart
+  std::uint64_t stray_packets = 0;  // packets of a distant scan; several in a row cause a restart
   std::uint64_t restarts = 0;
   std::uint64_t slices = 0;
   std::uint64_t incomplete_slices = 0;
 };
 
-/// Handles loss, reordering, duplicates and restarts: a slice is given out when it is complete, or
-/// after `reorder_packets` packets of later slices.
+/// Handles lost, reordered and duplicate packets, and restarts of the sensor. A slice is given out
+/// when it is complete, or after `reorder_packets` packets of later slices have arrived.
 class ScanBatcher {
  public:
   struct Options {
-    std::uint32_t slices_per_scan = 1;  // divides the columns
+    std::uint32_t slices_per_scan = 1;  // a divisor of the number of columns
     std::uint32_t reorder_packets = 4;
   };
 
   ScanBatcher(const Metadata& metadata, PointWriter writer, const Options& options);
 
   void Push(const LidarPacket& packet, Time arrival = {});
-  /// The next slice that is ready.
+  /// Returns the next slice that is ready, or nothing.
   std::optional<Slice> Pop();
   /// Gives out every slice that has begun. The next packet may belong to any scan.
   void Flush();
@@ -61,20 +63,20 @@ class ScanBatcher {
   std::uint32_t slices_per_scan() const { return slices_; }
 
  private:
-  using Key = std::int64_t;  // scan number x slices per scan + slice index
+  using Key = std::int64_t;  // scan number x slices per scan + index of the slice
 
   struct OpenSlice {
     Key key = 0;
-    std::uint32_t seen = 0;     // columns of the window that came
-    std::uint32_t packets = 0;  // packets of this slice
+    std::uint32_t seen = 0;     // number of columns in the sensor's window that arrived
+    std::uint32_t packets = 0;  // number of packets with columns of this slice
     std::uint32_t later_packets = 0;
-    bool timed = false;  // a valid column has set slice.start
+    bool timed = false;  // true once a valid column has set slice.start
     std::vector<bool> columns;
     Slice slice;
   };
 
   struct ColumnTime {
-    std::int64_t column = 0;  // counted across scans
+    std::int64_t column = 0;  // scan number x columns per scan + column
     std::uint64_t time = 0;
     Time arrival{};
   };
@@ -108,24 +110,26 @@ class ScanBatcher {
   std::uint32_t width_;
   std::uint32_t reorder_packets_;
   double column_period_;                 // time from one column to the next [ns]
-  std::vector<std::uint32_t> expected_;  // columns of the window in each slice
+  std::vector<std::uint32_t> expected_;  // number of columns in the sensor's window, for each slice
 
-  std::deque<OpenSlice> open_;  // in order of key
+  std::deque<OpenSlice> open_;  // sorted by key
   std::deque<Slice> ready_;
-  std::optional<ColumnTime> last_valid_;   // the valid column that came last
-  std::optional<std::uint32_t> frame_id_;  // of scan_
+  std::optional<ColumnTime> last_valid_;   // the valid column that arrived last
+  std::optional<std::uint32_t> frame_id_;  // frame id of the scan scan_
   std::uint32_t init_id_ = 0;
-  std::int64_t scan_ = 0;  // newest so far
-  Key next_ = 0;           // the first slice not yet given out
+  std::int64_t scan_ = 0;  // number of the newest scan so far
+  Key next_ = 0;           // the first slice that has not been given out yet
   std::uint32_t strays_in_a_row_ = 0;
   bool gap_ = false;
-  // Packets before the first received one or after the last do not count as lost.
+  // The positions of the first packet since the last restart, and of the newest packet. Packets
+  // before the first packet, or after the newest packet, do not count as lost.
   Key joined_key_ = 0;
   std::uint32_t joined_column_ = 0;
   std::int64_t newest_scan_ = 0;
   std::uint32_t newest_column_ = 0;
   bool flushing_ = false;
-  std::deque<std::int64_t> lost_;  // first columns of the newest losses, as scan x columns + column
+  // First columns of the newest lost packets: scan number x columns per scan + column.
+  std::deque<std::int64_t> lost_;
   BatcherStats stats_;
 };
 

@@ -9,15 +9,18 @@
 namespace lidar::ouster {
 namespace {
 
-// A clock with a larger offset is not synchronised, whatever the sensor claims.
+// If the sensor's clock is off by more than this, it is not synchronised, even if the sensor claims
+// so.
 constexpr Duration kMaxSyncError = std::chrono::seconds(1);
-// Silence after which a sensor without serial numbers in its packets may have another address.
+// A sensor without serial numbers in its packets is recognised by its address. If no packet arrived
+// for this long, packets from another address are accepted.
 constexpr Duration kSenderKept = std::chrono::seconds(1);
 
-/// Returns the offset from the sensor's time to UTC, or nothing for an unsynchronised clock.
+/// Returns the offset from the sensor's time to UTC, or nothing if the sensor's clock is not
+/// synchronised.
 std::optional<Duration> SensorToUtc(const Metadata& metadata, const StreamOptions& options) {
   if (metadata.timestamp_mode == "TIME_FROM_PTP_1588") return options.ptp_utc_offset;
-  // The NMEA messages that come with the pulse give UTC.
+  // The NMEA messages that accompany the pulse contain UTC.
   if (metadata.timestamp_mode == "TIME_FROM_SYNC_PULSE_IN") return Duration{0};
   return std::nullopt;
 }
@@ -28,7 +31,8 @@ std::unique_ptr<SensorStream> SensorStream::Create(Metadata metadata, const Stre
                                                    std::string* error) {
   auto writer = PointWriter::Create(metadata, options.points, error);
   if (!writer) return nullptr;
-  // Destaggering moves points across the edges of slices.
+  // A scan must be a single slice, because destaggering moves points to other columns, which may be
+  // in another slice.
   const std::uint32_t slices =
       options.points.destagger ? 1 : SlicesPerScan(options.slices_per_scan, metadata.shape());
   return std::unique_ptr<SensorStream>(
@@ -71,7 +75,8 @@ Duration SensorStream::slice_duration() const {
 void SensorStream::ObserveClocks(const LidarPacket& packet, const Arrival& arrival) {
   const bool hold = options_.clock == ClockMapper::Mode::kHold;
   for (std::uint32_t i = 0; i < packet.columns(); ++i) {
-    // For kHold the first column sets the offset, so that the first slice of a file starts at 0.
+    // If the mode is kHold, the first valid column sets the offset, so that the first slice of a
+    // file starts at 0.
     const PacketColumn column = packet.Column(hold ? i : packet.columns() - 1 - i);
     if (!column.valid()) continue;
     if (local_.WouldJump(column.timestamp, arrival.local)) {
@@ -89,7 +94,8 @@ void SensorStream::ObserveClocks(const LidarPacket& packet, const Arrival& arriv
   }
 }
 
-/// Counts a packet that has another size than this sensor's lidar packets, and returns its kind.
+/// Counts a packet that does not have the size of this sensor's lidar packets, and returns its
+/// kind.
 PacketVerdict SensorStream::Refuse(ByteView payload, const Arrival& arrival) {
   if (IsImuPacket(payload, metadata_)) {
     const bool first = batcher_.stats().packets == 0;
@@ -122,8 +128,8 @@ PacketVerdict SensorStream::Push(ByteView payload, const Arrival& arrival) {
     ++stats_.foreign;
     return PacketVerdict::kForeign;
   }
-  // Checked after IsForeign(): if this sensor sends no CRC, a foreign packet with a valid CRC would
-  // make the sensor's packets count as damaged.
+  // The CRC is checked after IsForeign(). Otherwise, if this sensor sends no CRC, a foreign packet
+  // with a valid CRC would make the sensor's own packets count as damaged.
   if (!crc_.Accept(payload)) {
     ++stats_.damaged;
     return PacketVerdict::kDamaged;
@@ -132,14 +138,15 @@ PacketVerdict SensorStream::Push(ByteView payload, const Arrival& arrival) {
     refused_init_id_ = header.init_id;
     return PacketVerdict::kNewInitId;
   }
-  // Old metadata have no serial number. The init id shows that the packet is from the metadata's
-  // sensor.
+  // Old metadata have no serial number. If the packet has the init id of the metadata, it was sent
+  // by the metadata's sensor, so its serial number is known from here on.
   if (metadata_.serial == 0 && metadata_.init_id != 0 && header.init_id == metadata_.init_id)
     metadata_.serial = header.serial;
   ObserveClocks(*packet, arrival);
   last_arrival_utc_ = arrival.utc;
   sender_ = arrival.sender;
-  // Timestamps of invalid columns mean nothing.
+  // No time is known before the first valid column, because timestamps of invalid columns mean
+  // nothing.
   if (!knows_time()) return PacketVerdict::kLidar;
   batcher_.Push(*packet, arrival.local);
   CollectSlices();
@@ -161,7 +168,8 @@ Time SensorStream::UtcOf(std::uint64_t sensor_ns) const {
   return utc_.Map(sensor_ns);
 }
 
-/// Collects slices with their times before the clocks change.
+/// Takes the finished slices from the batcher and sets their times. Must be called before the
+/// clocks change.
 void SensorStream::CollectSlices() {
   while (auto slice = batcher_.Pop()) {
     TimedSlice timed;

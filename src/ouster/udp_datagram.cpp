@@ -9,13 +9,14 @@ namespace {
 constexpr std::size_t kMaxPartials = 32;
 constexpr std::size_t kMaxIpPayload = 65535;
 constexpr std::size_t kFragmentUnit = 8;
-// IP identifiers are used again within minutes, so old fragments must be gone by then.
+// Fragments that are older than this are dropped, because IP identifiers are reused within minutes.
 constexpr Duration kMaxAge = std::chrono::seconds(5);
 constexpr std::uint8_t kUdp = 17;
 constexpr std::uint16_t kEtherIpv4 = 0x0800;
 constexpr std::uint16_t kEtherIpv6 = 0x86dd;
 
-/// The IP packet behind an Ethernet header and VLAN tags; empty for anything but IP.
+/// Returns the IP packet that follows the Ethernet header and VLAN tags. Returns an empty view if
+/// the frame is not IP.
 ByteView AfterEthernet(ByteView frame) {
   constexpr int kMaxTags = 4;
   ByteReader r(frame);
@@ -82,7 +83,8 @@ bool IsKnown(LinkType link) {
   return false;
 }
 
-/// Finds, or begins, the datagram of which `f` is a part.
+/// Returns the incomplete datagram that the fragment `f` belongs to. If there is none, adds a new
+/// datagram.
 std::deque<IpReassembler::Partial>::iterator IpReassembler::Find(const Fragment& f, Time time) {
   auto at = std::find_if(partials_.begin(), partials_.end(), [&](const Partial& p) {
     return p.id == f.id && p.addresses == f.addresses;
@@ -162,7 +164,8 @@ std::optional<UdpDatagram> UdpExtractor::FromIpv4(ByteView packet) {
   r.Skip(2);
   CopyAddress(r.Bytes(4), &f.addresses.source);
   CopyAddress(r.Bytes(4), &f.addresses.destination);
-  if (total == 0) total = packet.size;  // left to the network card by segmentation offload
+  // A length of 0 comes from segmentation offload: the network card fills in the length later.
+  if (total == 0) total = packet.size;
   if (!r.ok() || protocol != kUdp || header_size < 20 || total < header_size || total > packet.size)
     return std::nullopt;
   f.offset = (flags & 0x1fffU) * kFragmentUnit;
@@ -203,7 +206,7 @@ std::optional<UdpDatagram> UdpExtractor::FromIpv6(ByteView packet) {
     } else {
       return std::nullopt;
     }
-    if (f.offset > 0) break;  // only a first fragment goes on with headers
+    if (f.offset > 0) break;  // only the first fragment has further headers
   }
   if (!body.ok() || next != kUdp) return std::nullopt;
   f.payload = body.Rest();

@@ -25,12 +25,12 @@ enum class LinkType : std::uint32_t {
   kLinuxSll2 = 276,
 };
 
-/// Returns false for a type that Extract() cannot read.
+/// Returns false if Extract() cannot read frames of this type.
 bool IsKnown(LinkType link);
 
 struct IpEndpoints {
   bool is_ipv6 = false;
-  std::array<std::uint8_t, 16> source{};  // the first 4 bytes for IPv4
+  std::array<std::uint8_t, 16> source{};  // for IPv4, only the first 4 bytes are used
   std::array<std::uint8_t, 16> destination{};
   bool operator==(const IpEndpoints& o) const {
     return is_ipv6 == o.is_ipv6 && source == o.source && destination == o.destination;
@@ -44,18 +44,18 @@ struct UdpDatagram {
   ByteView view() const { return {payload.data(), payload.size()}; }
 };
 
-/// Reassembles fragments. Holds a bounded number of datagrams for a short time; contradicting
-/// fragments discard their datagram (RFC 5722).
+/// Reassembles IP fragments. Keeps a bounded number of incomplete datagrams for a few seconds.
+/// Drops a datagram if its fragments overlap (RFC 5722), but ignores an exact copy of a fragment.
 class IpReassembler {
  public:
   struct Fragment {
     IpEndpoints addresses;
     std::uint32_t id = 0;
-    std::size_t offset = 0;  // bytes, a multiple of 8
+    std::size_t offset = 0;  // in bytes; a multiple of 8
     bool more = false;
     ByteView payload;
   };
-  /// Returns the whole IP payload if `fragment` completes it.
+  /// Returns the complete IP payload if `fragment` is its last missing part.
   std::optional<std::vector<std::uint8_t>> Add(const Fragment& fragment, Time time);
 
  private:
@@ -64,7 +64,7 @@ class IpReassembler {
     std::uint32_t id = 0;
     Time begun{};
     std::vector<std::uint8_t> bytes;
-    std::vector<bool> blocks;  // of 8 bytes
+    std::vector<bool> blocks;  // true for each block of 8 bytes that arrived
     std::optional<std::size_t> size;
     std::size_t received = 0;
   };
@@ -75,8 +75,9 @@ class IpReassembler {
 
 class UdpExtractor {
  public:
-  /// Returns nothing for a frame that is not UDP, is damaged or cut short, or is a fragment whose
-  /// datagram is not complete. `time`: of the capture.
+  /// Returns the UDP datagram of a captured frame. Returns nothing if the frame is not UDP, is
+  /// damaged or is cut short, or if it is a fragment of a datagram that is not complete yet. `time`
+  /// is the capture time.
   std::optional<UdpDatagram> Extract(LinkType link, ByteView frame, Time time = {});
 
  private:
@@ -86,7 +87,7 @@ class UdpExtractor {
   std::optional<UdpDatagram> FromFragment(const IpReassembler::Fragment& fragment);
 
   IpReassembler reassembler_;
-  Time time_{};  // of the present frame
+  Time time_{};  // capture time of the current frame
 };
 
 }  // namespace lidar::ouster
