@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The duration of a capture and offsets in its file, for the reading thread and for threads that
-// query.
+// Finds the duration of a capture and offsets in its file. It is used by the reading thread and by
+// threads that query the duration.
 #pragma once
 #include <gst/gst.h>
 
@@ -13,26 +13,27 @@
 
 namespace lidar::gst {
 
-/// The first call reads the file as far as it needs; later calls cost nothing. All threads may call
-/// it.
+/// Finds times in a capture file. The file is read only once, and only as far as the calls need.
+/// Any thread may call the methods.
 class CaptureTimeline {
  public:
-  /// `packet_interval` is used as the duration of the last packet.
+  /// `packet_interval` is the duration that the last packet counts with.
   CaptureTimeline(std::string path, Duration packet_interval)
       : path_(std::move(path)), packet_interval_(packet_interval) {}
 
-  /// Returns nothing if the file cannot be read, or after Cancel().
+  /// Returns the duration of the capture. Returns nothing if the file cannot be read, or after
+  /// Cancel().
   std::optional<GstClockTime> duration();
 
   struct Place {
     Time first{};                        // capture time of the file's first packet
-    std::optional<std::int64_t> offset;  // empty: the front of the file
+    std::optional<std::int64_t> offset;  // empty: start at the front of the file
   };
-  /// Returns the place from which a reader finds all data captured at `time` and later. Returns
-  /// nothing if duration() would.
+  /// Returns the place at which a reader must start to find all data captured at `time` and later.
+  /// Returns nothing if the file cannot be read, or after Cancel().
   std::optional<Place> Find(Duration time);
 
-  /// Ends a running call, and each later one, until Allow().
+  /// Makes the running call and all later calls return nothing, until Allow() is called.
   void Cancel() { cancelled_ = true; }
   void Allow() { cancelled_ = false; }
   bool cancelled() const { return cancelled_; }
@@ -43,7 +44,7 @@ class CaptureTimeline {
   const std::string path_;
   const Duration packet_interval_;
   std::atomic<bool> cancelled_{false};
-  std::mutex mutex_;  // guards all below; held while reading the file
+  std::mutex mutex_;  // guards all members below; held while reading the file
   std::optional<ouster::CaptureIndex> index_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The debug category of the plugin; include it last.
+// The debug category of the plugin. Include this file last.
 #pragma once
 #include <gst/gst.h>
 

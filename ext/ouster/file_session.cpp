@@ -48,11 +48,12 @@ void FileSession::Seek(const GstSegment& segment) {
   if (begun_ || segment.start > 0) target_ = ToTime(segment.start);
 }
 
-/// Moves to the beginning of the target's slice.
+/// Continues at the beginning of the slice that contains the target of the seek.
 GstFlowReturn FileSession::GoToTarget() {
-  // Greatest drift of the sensor's clock relative to the capture's clock.
+  // The greatest drift of the sensor's clock relative to the clock of the capture.
   constexpr Duration kLead = std::chrono::seconds(1);
-  // Packets of the two scans before are taken, too, because they may be out of order.
+  // The reading starts two scans earlier, because the packets of the target's slice may be out of
+  // order.
   skip_to_ = *target_ - 2 * stream()->metadata().scan_period();
   const auto place = timeline_->Find(skip_to_->time_since_epoch() - kLead);
   if (!place && timeline_->cancelled()) return GST_FLOW_FLUSHING;
@@ -70,7 +71,7 @@ bool FileSession::IsBeforeTarget(const PcapFeed::Packet& packet) const {
   return sampled.value_or(Time(packet.due)) < *skip_to_;
 }
 
-/// Waits for the pipeline's clock. Returns false if the wait was interrupted in order to stop.
+/// Waits until `running_time` on the pipeline's clock. Returns false if Unlock() ends the wait.
 bool FileSession::WaitUntil(GstClockTime running_time) {
   const std::unique_ptr<GstClock, Unref> clock(gst_element_get_clock(gst_element()));
   if (!clock) return true;
@@ -122,7 +123,7 @@ GstFlowReturn FileSession::EndOfCapture() {
 }
 
 GstFlowReturn FileSession::Poll() {
-  // The first packets of the file are taken before a seek, because they set the clock.
+  // A seek is performed only after the first packets of the file have set the clock.
   if (target_ && stream()->knows_time()) {
     const GstFlowReturn flow = GoToTarget();
     if (flow != GST_FLOW_OK) return flow;

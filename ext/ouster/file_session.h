@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A session on a capture file, at full speed or at the pace of the capture.
+// A session that reads a capture file, at full speed or at the speed of the capture.
 #pragma once
 #include <atomic>
 #include <memory>
@@ -37,16 +37,17 @@ class FileSession : public Session {
 
   std::unique_ptr<PcapFeed> pcap_;
   std::optional<CaptureTimeline> timeline_;
-  bool begun_ = false;           // a packet was read
+  bool begun_ = false;           // true once a packet was read
   std::optional<Time> target_;   // time of a pending seek
-  std::optional<Time> skip_to_;  // packets before it are left out
+  std::optional<Time> skip_to_;  // packets sampled before this time are dropped
   bool restart_reported_ = false;
   bool cut_reported_ = false;
   GstClockTime pace_start_ = GST_CLOCK_TIME_NONE;  // running time of the capture's first packet
-  Duration taken_utc_offset_{0};                   // of the packets so far
-  std::atomic<Duration> utc_offset_{Duration{0}};  // from the running time since the last pause
+  Duration taken_utc_offset_{0};                   // UTC offset that the packets so far have used
+  // The offset from running time to UTC, measured when the pipeline last began to play.
+  std::atomic<Duration> utc_offset_{Duration{0}};
 
-  std::mutex wait_mutex_;  // guards all below
+  std::mutex wait_mutex_;  // guards all members below
   GstClockID wait_ = nullptr;
   bool flushing_ = false;
 };

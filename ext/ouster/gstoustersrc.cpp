@@ -29,14 +29,15 @@ namespace {
 
 using namespace lidar::gst;
 
-// Guess until the sensor is known: a slice at 10 or 20 scans/s.
+// The reported latency until the sensor is known: the usual duration of a slice at 10 or 20
+// scans/s.
 constexpr GstClockTime kUsualSlice = 12'500 * GST_USECOND;
 
 struct State {
-  std::mutex mutex;  // guards all below; not held while the session works
+  std::mutex mutex;  // guards all members below; not held while the session works
   OusterSettings settings;
-  std::shared_ptr<Session> session;  // between start and stop
-  Counters last;                     // of the last session
+  std::shared_ptr<Session> session;  // exists between start and stop
+  Counters last;                     // counters of the session that ended last
   guint32 last_seek = GST_SEQNUM_INVALID;
 };
 
@@ -95,7 +96,7 @@ static gboolean UnlockStop(GstBaseSrc* base) {
   return TRUE;
 }
 
-/// The duration of a seekable capture; -1 else.
+/// Returns the duration of the capture, or -1 if the source is not seekable.
 static gint64 DurationOf(GstBaseSrc* base) {
   const auto session = SessionOf(base);
   const auto duration = session ? session->duration() : std::nullopt;
@@ -141,7 +142,7 @@ static gboolean DoSeek(GstBaseSrc* base, GstSegment* segment) {
   return TRUE;
 }
 
-/// Seeks on both pads, because the base class does not flush the pad imu.
+/// Seeks on both pads, because the base class flushes only the pad src.
 static gboolean SeekAll(GstBaseSrc* base, GstEvent* event, Session* session) {
   gdouble rate = 1;
   GstFormat format = GST_FORMAT_UNDEFINED;
@@ -154,7 +155,7 @@ static gboolean SeekAll(GstBaseSrc* base, GstEvent* event, Session* session) {
   {
     State& state = StateOf(base);
     const std::lock_guard lock(state.mutex);
-    // A seek comes once from each sink.
+    // Each sink of the pipeline sends the seek, but it is performed only once.
     if (std::exchange(state.last_seek, seqnum) == seqnum) return TRUE;
   }
   if (start == GST_SEEK_TYPE_END || stop == GST_SEEK_TYPE_END) {
@@ -165,7 +166,7 @@ static gboolean SeekAll(GstBaseSrc* base, GstEvent* event, Session* session) {
   }
   if ((flags & GST_SEEK_FLAG_FLUSH) != 0) session->imu().StartFlush(seqnum);
   const gboolean done = GST_BASE_SRC_CLASS(gst_lidar_ouster_src_parent_class)->event(base, event);
-  session->imu().StopFlush();  // needed if the seek failed
+  session->imu().StopFlush();  // ends the flush if the seek failed
   return done;
 }
 
@@ -176,8 +177,8 @@ static gboolean Event(GstBaseSrc* base, GstEvent* event) {
   return GST_BASE_SRC_CLASS(gst_lidar_ouster_src_parent_class)->event(base, event);
 }
 
-/// Sends an application's seek to the pad, because the base class would perform the seek without a
-/// call of Event().
+/// Sends a seek of the application to the pad. Otherwise the base class would perform the seek
+/// without calling Event().
 static gboolean SendEvent(GstElement* element, GstEvent* event) {
   const auto session = SessionOf(element);
   if (GST_EVENT_TYPE(event) == GST_EVENT_SEEK && session && session->seekable())
@@ -222,7 +223,7 @@ static void InstallVmethods(GstLidarOusterSrcClass* klass) {
   src->event = Event;
   src->is_seekable = IsSeekable;
   src->do_seek = DoSeek;
-  // Caps are set with the first slice, because they depend on the sensor.
+  // The caps are set when the first slice is sent, because they depend on the sensor.
   src->negotiate = [](GstBaseSrc*) -> gboolean { return TRUE; };
   GST_PUSH_SRC_CLASS(klass)->create = Create;
   GST_ELEMENT_CLASS(klass)->change_state = ChangeState;

@@ -21,14 +21,15 @@ struct Headers {
   ~Headers() { curl_slist_free_all(list); }
 };
 
-/// The received part of an answer.
+/// The part of an answer that has been received so far.
 struct Answer {
   std::string body;
   std::size_t header_bytes = 0;
   bool too_large = false;
 };
 
-/// curl ends the request if a function returns another size than it was given.
+/// Appends received data to the answer. If it returns another size than it was given, curl ends the
+/// request.
 std::size_t TakeBody(char* data, std::size_t size, std::size_t n, void* to) {
   auto& answer = *static_cast<Answer*>(to);
   answer.too_large = answer.body.size() + size * n > kMaxBody;
@@ -44,13 +45,13 @@ std::size_t TakeHeader(char*, std::size_t size, std::size_t n, void* to) {
   return answer.too_large ? 0 : size * n;
 }
 
-/// Bounds the hosts and the time of a request.
+/// Limits the hosts that a request may reach, and the duration of a request.
 void SetBounds(CURL* curl) {
   curl_easy_setopt(curl, CURLOPT_PROTOCOLS_STR, "http,https");
   curl_easy_setopt(curl, CURLOPT_FOLLOWLOCATION, 0L);
   curl_easy_setopt(curl, CURLOPT_NOPROXY, "*");
   curl_easy_setopt(curl, CURLOPT_NOSIGNAL, 1L);
-  // Name servers that do not answer must not hold up the end of a request.
+  // The end of a request must not wait for name servers that do not answer.
   curl_easy_setopt(curl, CURLOPT_QUICK_EXIT, 1L);
   curl_easy_setopt(curl, CURLOPT_CONNECTTIMEOUT_MS, kConnectTimeoutMs);
   curl_easy_setopt(curl, CURLOPT_TIMEOUT_MS, kTimeoutMs);
@@ -100,8 +101,8 @@ void HttpClient::Cancel() {
   if (multi_ != nullptr) curl_multi_wakeup(multi_);
 }
 
-/// Runs the prepared request until it ends or is cancelled; returns a CURLcode. curl_easy_perform()
-/// would check cancelled_ only once a second.
+/// Runs the prepared request until it ends or is cancelled, and returns a CURLcode.
+/// curl_easy_perform() is not used, because it would check cancelled_ only once a second.
 int HttpClient::Transfer() {
   constexpr int kLongestWaitMs = 500;
   CURLcode code = CURLE_ABORTED_BY_CALLBACK;
@@ -144,7 +145,7 @@ HttpResponse HttpClient::Perform(const std::string& path, const std::string* jso
   const Headers headers;
   Answer answer;
   CURL* curl = curl_;
-  curl_easy_reset(curl);  // keeps the connection
+  curl_easy_reset(curl);  // keeps the connection open
   SetBounds(curl);
   curl_easy_setopt(curl, CURLOPT_URL, url.c_str());
   curl_easy_setopt(curl, CURLOPT_ERRORBUFFER, message.data());

@@ -20,14 +20,18 @@ namespace {
 
 constexpr guint kDefaultLidarPort = 7502;
 constexpr guint kDefaultImuPort = 7503;
-constexpr gint64 kSilenceUs = 1'000'000;        // silence after which a sensor counts as away
-constexpr gint64 kFirstSilenceUs = 3'000'000;   // the same before its first packet
+// If no packet arrives for this long, the sensor counts as disconnected.
+constexpr gint64 kSilenceUs = 1'000'000;
+// The same limit before the first packet of the sensor.
+constexpr gint64 kFirstSilenceUs = 3'000'000;
 constexpr gint64 kCheckNs = 250 * GST_MSECOND;  // interval between checks for silence
 constexpr gint64 kQuestionIntervalUs = 1'000'000;
-constexpr gint64 kWaitForMetadataUs = 2'000'000;  // of a sensor with a new init id
+// How long the session waits for new metadata after the sensor's init id changed.
+constexpr gint64 kWaitForMetadataUs = 2'000'000;
 constexpr guint kWrongSizesForQuestion = 4;
 
-/// Returns a server's text in a form for messages: short, and valid UTF-8, which GStreamer demands.
+/// Converts text of a server for use in messages. The result is short and valid UTF-8, which
+/// GStreamer requires.
 std::string Readable(const std::string& text) {
   constexpr gssize kLongest = 1000;  // bytes
   const auto size = std::min(static_cast<gssize>(text.size()), kLongest);
@@ -35,7 +39,8 @@ std::string Readable(const std::string& text) {
   return valid.get();
 }
 
-/// Returns an IPv4 address as a mapped one, so that it is equal on all sockets.
+/// Returns the IP address of `from`. IPv4 addresses are returned as IPv4-mapped IPv6 addresses,
+/// because an IPv6 socket reports them in this form.
 ouster::Sender SenderOf(const NativeAddress& from) {
   ouster::Sender sender{};
   if (from.storage.ss_family == AF_INET6) {
@@ -51,8 +56,8 @@ ouster::Sender SenderOf(const NativeAddress& from) {
   return sender;
 }
 
-/// Returns true if the process may open `count` more files. GLib aborts if it cannot open a file
-/// that it needs.
+/// Returns true if the process may open `count` more files. GLib aborts the process if it cannot
+/// open a file that it needs.
 bool CanOpenFiles(std::size_t count) {
   std::vector<int> files;
   while (files.size() < count) {
@@ -69,11 +74,11 @@ bool CanOpenFiles(std::size_t count) {
 LiveSession::LiveSession(GstBaseSrc* element, const OusterSettings& settings)
     : Session(element, settings) {}
 
-// The link ends first, because its thread wakes the sockets.
+// The link is destroyed first, because its thread calls udp_.Wake().
 LiveSession::~LiveSession() { link_.reset(); }
 
 bool LiveSession::Open() {
-  constexpr std::size_t kFilesOfLink = 6;  // sockets of HTTP and of the resolver
+  constexpr std::size_t kFilesOfLink = 6;  // sockets for HTTP and for name resolution
   constexpr std::size_t kFilesOfFeed = 5;  // two sockets, and the descriptors that wake their wait
   constexpr std::size_t kFilesOfOthers = 4;  // for the application's main loop
   const std::size_t wanted =
@@ -89,7 +94,8 @@ bool LiveSession::Open() {
   return OpenFeed() && OpenLink();
 }
 
-/// Opens the sockets at once if a file has the metadata; otherwise once the sensor has sent them.
+/// Opens the sockets if a file has the metadata. Otherwise the sockets are opened after the sensor
+/// has sent its metadata.
 bool LiveSession::OpenFeed() {
   if (settings().hostname.empty() || !settings().metadata.empty()) {
     auto metadata = LoadMetadata();
@@ -150,7 +156,7 @@ void LiveSession::UnlockStop() {
   udp_.ClearWake();
 }
 
-/// Drops the datagrams that came into the sockets during the pause.
+/// Drops the datagrams that arrived in the sockets' buffers during the pause.
 void LiveSession::LeavePauseBehind() {
   constexpr int kMostBatches = 4096;
   last_packet_us_ = Now();
@@ -194,7 +200,8 @@ void LiveSession::Ask() {
   link_->Request();
 }
 
-/// Returns false after an error was posted.
+/// Handles the metadata or the error that the sensor link returned. If the session cannot continue,
+/// posts an error and returns false.
 bool LiveSession::HandleAnswer(SensorLink::Result result) {
   if (result.metadata) {
     api_reported_ = false;
@@ -215,7 +222,7 @@ bool LiveSession::HandleAnswer(SensorLink::Result result) {
         ("is the sensor powered, and is its name or address right?"));
     return false;
   }
-  // The API may be down while packets continue.
+  // Packets may continue to arrive even if the HTTP API is down.
   if (connected_) return true;
   SetConnected(false, why);
   if (!std::exchange(api_reported_, true))
@@ -227,8 +234,9 @@ bool LiveSession::HandleAnswer(SensorLink::Result result) {
   return true;
 }
 
-/// Returns true if the session waits for the stream. Posts an error and returns false without
-/// `reconnect`, or if no packet ever came, because a setting is wrong then.
+/// Returns true if the session waits until the sensor's stream is switched on. Posts an error and
+/// returns false if `reconnect` is false. Does so also if no packet has ever arrived, because a
+/// setting is wrong then.
 bool LiveSession::WaitWhileSwitchedOff() {
   if (heard_ && settings().reconnect) {
     SetConnected(false, "the sensor's lidar stream is switched off");
@@ -262,13 +270,14 @@ bool LiveSession::TakeMetadata(ouster::Metadata metadata) {
   return true;
 }
 
-/// The sensor restarted or was reconfigured. Its packets are dropped while new metadata may come,
-/// for kWaitForMetadataUs at most; then they are used with the old metadata.
+/// Handles a packet of a sensor that restarted or was reconfigured. Packets are dropped until new
+/// metadata arrives, but for at most kWaitForMetadataUs. After this time, packets are used with the
+/// old metadata.
 void LiveSession::HandleNewInitId(ByteView payload, const ouster::Arrival& arrival) {
   const gint64 now = Now();
   if (new_init_id_us_ == 0) new_init_id_us_ = now;
-  // If our sensor has no serial number, the packet may be from another sensor, while ours
-  // continues.
+  // If the metadata have no serial number, the packet may be from another sensor, while our own
+  // sensor continues to send.
   const bool may_be_another = stream()->metadata().serial == 0;
   if ((link_ || may_be_another) && now - new_init_id_us_ < kWaitForMetadataUs) return Ask();
   new_init_id_us_ = 0;
@@ -298,7 +307,7 @@ void LiveSession::HandlePacket(const ReceivedDatagram& d, Time now, Time utc_now
   if (stream() == nullptr) return;
   const Time utc = GST_CLOCK_TIME_IS_VALID(d.arrival) ? ToTime(d.arrival) : utc_now;
   const ouster::Arrival arrival{now + (utc - utc_now), utc, SenderOf(*d.from)};
-  // A packet that arrived before running time 0 is dropped.
+  // Packets that arrived before running time 0 are dropped.
   if (arrival.local < Time{}) return;
   const ByteView payload{d.data, d.size};
   switch (Push(payload, arrival)) {
@@ -322,7 +331,8 @@ void LiveSession::HandlePacket(const ReceivedDatagram& d, Time now, Time utc_now
   }
 }
 
-/// Returns false after an error was posted.
+/// Checks whether the sensor has been silent for too long. If the session cannot wait for the
+/// sensor, posts an error and returns false.
 bool LiveSession::CheckSilence() {
   if (stream() == nullptr) return true;
   const bool never = stream()->batcher().stats().packets == 0 && !lost_once_;

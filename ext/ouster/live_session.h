@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A session with a sensor on the network: finds the sensor, follows it, and waits while it is away.
+// A session with a sensor on the network. It fetches the sensor's metadata, notices restarts of the
+// sensor, and waits while no packets arrive.
 #pragma once
 #include <atomic>
 #include <memory>
@@ -39,22 +40,22 @@ class LiveSession : public Session {
   void LeavePauseBehind();
   void SetConnected(bool connected, const std::string& reason);
   void Ask();
-  /// Microseconds by the pipeline's clock; without one, by the system's.
+  /// Returns the time of the pipeline's clock, or of the system's clock if there is none [us].
   gint64 Now() const;
 
-  std::unique_ptr<SensorLink> link_;  // null without hostname
+  std::unique_ptr<SensorLink> link_;  // null if hostname is empty
   UdpFeed udp_;
   std::atomic<bool> flushing_{false};
-  std::atomic<bool> resumed_{false};  // since the last Poll()
+  std::atomic<bool> resumed_{false};  // true if Resume() was called since the last Poll()
   bool polled_ = false;
   guint receive_buffer_ = 0;
   bool connected_ = false;
   bool lost_once_ = false;
-  bool heard_ = false;  // a packet of the sensor has come
+  bool heard_ = false;  // true once a packet of the sensor has arrived
   guint reconnects_ = 0;
-  std::string destination_;    // of the sensor's packets, by its configuration
-  gint64 last_packet_us_ = 0;  // by Now()
-  gint64 new_init_id_us_ = 0;  // arrival of the first packet of an unknown init id
+  std::string destination_;    // where the sensor sends packets, as in its configuration
+  gint64 last_packet_us_ = 0;  // a time of Now()
+  gint64 new_init_id_us_ = 0;  // when the first packet with an unknown init id arrived
   gint64 last_question_us_ = 0;
   guint wrong_sizes_in_a_row_ = 0;
   bool size_reported_ = false;

@@ -9,8 +9,9 @@ namespace lidar::gst {
 
 class LossReport {
  public:
-  /// Returns the number of packets lost since the last report; nothing if there are none, or within
-  /// a second of the last report. A late packet reduces `total`.
+  /// Returns the number of packets that were lost since the last report. Returns nothing if there
+  /// are none, or if the last report is less than a second old. `total` is the number of all lost
+  /// packets; it decreases if a packet that counted as lost arrives late.
   std::optional<guint64> Take(guint64 total, GstClockTime now) {
     if (total <= reported_) return std::nullopt;
     if (GST_CLOCK_TIME_IS_VALID(last_) && now - last_ < GST_SECOND) return std::nullopt;

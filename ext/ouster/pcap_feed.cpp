@@ -27,7 +27,7 @@ bool PcapFeed::StartOver() {
 }
 
 std::optional<PcapFeed::Packet> PcapFeed::Next() {
-  constexpr std::size_t kMaxSizes = 64;  // number of payload sizes to remember
+  constexpr std::size_t kMaxSizes = 64;  // number of different payload sizes to count
   auto captured = reader_->Next();
   if (!captured) {
     error_ = reader_->error();
@@ -49,7 +49,7 @@ std::optional<PcapFeed::Packet> PcapFeed::Next() {
 }
 
 bool PcapFeed::Reposition(Time first, std::optional<std::int64_t> offset) {
-  // Every jump rewinds the reader first, because after an error a reader reads no more.
+  // The reader is always rewound first, because after an error it reads no more.
   if (!reader_->Rewind() || (offset && !reader_->GoTo(*offset))) return false;
   first_ = last_ = first;
   return true;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The packets of a capture file, looped on request, with their due times.
+// Reads the packets of a capture file with their due times. The file may be looped.
 #pragma once
 #include <map>
 #include <memory>
@@ -14,7 +14,7 @@ namespace lidar::gst {
 
 class PcapFeed {
  public:
-  /// Returns null and `error` if the file is missing or is not a capture.
+  /// Returns null and sets `error` if the file is missing or is not a capture.
   static std::unique_ptr<PcapFeed> Open(const std::string& path, const ouster::Metadata& metadata,
                                         bool loop, std::string* error);
 
@@ -23,16 +23,18 @@ class PcapFeed {
     Duration due{};  // since the first packet of the first round
     Time captured;   // since the Unix epoch
     ouster::Sender sender{};
-    bool starts_over = false;  // first packet of another round
+    bool starts_over = false;  // true for the first packet of a later round
   };
-  /// Returns nothing at the end, or for a damaged file: error() then has the reason.
+  /// Returns the next packet, or nothing at the end of the file. Also returns nothing if the file
+  /// is damaged; error() then returns the reason.
   std::optional<Packet> Next();
-  /// Makes Next() continue at `offset` of the file, or at its front, with times relative to
-  /// `first`. Returns false if the file is gone. Not for a looped file.
+  /// Makes Next() continue at `offset` in the file, or at the front if there is no offset. Due
+  /// times are then relative to `first`. Returns false if the file cannot be opened. Must not be
+  /// used with `loop`.
   bool Reposition(Time first, std::optional<std::int64_t> offset);
   const std::string& error() const { return error_; }
   bool found_lidar_packets() const { return found_; }
-  /// Describes the file's packets, which may be of other sensors, for a user.
+  /// Describes the file's packets in a text for the user, for files without packets of this sensor.
   std::string DescribeContents() const;
 
  private:
@@ -43,7 +45,7 @@ class PcapFeed {
   std::size_t packet_size_ = 0;
   Duration packet_interval_{};
   bool loop_ = false;
-  std::optional<Time> first_;  // of this round
+  std::optional<Time> first_;  // capture time of the first packet in this round
   Time last_{};
   Duration round_start_{};
   bool starts_over_ = false;

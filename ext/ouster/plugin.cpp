@@ -8,7 +8,7 @@ GST_ELEMENT_REGISTER_DECLARE(ouster_src)
 
 static gboolean plugin_init(GstPlugin* plugin) {
   gst_lidar_init();
-  // curl counts these calls. There is no cleanup, because the plugin is never unloaded.
+  // curl counts calls of this function. There is no cleanup, because the plugin is never unloaded.
   if (curl_global_init(CURL_GLOBAL_DEFAULT) != CURLE_OK) return FALSE;
   return GST_ELEMENT_REGISTER(ouster_src, plugin);
 }

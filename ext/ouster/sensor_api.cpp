@@ -13,28 +13,30 @@ using nlohmann::json;
 constexpr long kNotFound = 404;
 constexpr const char* kAuto = "@auto";
 
-/// Returns an empty object if the text is not an object.
+/// Parses a JSON object. Returns an empty object for any other text.
 json ParseObject(const std::string& text) {
   json root = ouster::ParseJsonObject(text);
   if (root.is_discarded()) return json::object();
   return root;
 }
 
-/// A property may hold bytes that are not UTF-8, which json::dump() refuses by throwing.
+/// Converts `value` to text. Bytes that are not UTF-8 are replaced, because json::dump() would
+/// throw an exception otherwise. Such bytes may come from a property.
 std::string Write(const json& value) {
   return value.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
-/// "180000,360000" [millidegrees]
+/// Parses a window such as "180000,360000" [millidegrees].
 std::optional<json> ParseWindow(const std::string& text) {
   const json window = json::parse("[" + text + "]", nullptr, false);
   if (!window.is_array() || window.size() != 2 || !window[0].is_number_unsigned() ||
       !window[1].is_number_unsigned())
     return std::nullopt;
-  return std::make_optional<json>(window);  // typed, because nlohmann_json 3.12 converts optionals
+  // The type is explicit, because nlohmann_json 3.12 converts an optional to JSON.
+  return std::make_optional<json>(window);
 }
 
-/// The parameters that the settings ask for, by the names of the API.
+/// Returns the parameters that the settings want to change, by their names in the API.
 std::optional<json> Wanted(const OusterSettings& s, ApiError* error) {
   json wanted = json::object();
   if (!s.udp_dest.empty()) wanted["udp_dest"] = s.udp_dest;
@@ -78,7 +80,7 @@ std::optional<ouster::Metadata> SensorApi::FetchMetadata(ApiError* error) {
   }
   std::string why;
   auto metadata = ouster::ParseMetadata(response.body, &why);
-  // The error is not permanent: a sensor that starts up answers with parts missing.
+  // The error is not permanent, because a sensor that is starting up sends incomplete metadata.
   if (!metadata) *error = {"the sensor's metadata cannot be used: " + why, false};
   return metadata;
 }
@@ -94,7 +96,8 @@ std::optional<std::string> SensorApi::ReadConfig(bool staged, ApiError* error) {
   return std::nullopt;
 }
 
-/// Returns our address as the sensor sees it: `@auto` is staged and read back, not activated.
+/// Returns the address of this machine as the sensor sees it. To find it, sets `@auto` in the
+/// staged configuration, which is not activated, and reads the address back.
 std::optional<std::string> SensorApi::ResolveAuto(ApiError* error) {
   HttpResponse response = client_.Post("sensor/config?staging=true&reinit=false&persist=false",
                                        R"({"udp_dest":"@auto"})");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The sensor's HTTP API: reads its metadata, and sets its configuration.
+// A client of the sensor's HTTP API: reads the metadata, and changes the configuration.
 #pragma once
 #include <functional>
 #include <optional>
@@ -11,7 +11,7 @@
 
 namespace lidar::gst {
 
-/// The result of a failed request. `permanent`: asking again will not help.
+/// The reason why a request failed. If `permanent` is true, another attempt would fail, too.
 struct ApiError {
   std::string text;
   bool permanent = false;
@@ -19,17 +19,18 @@ struct ApiError {
 
 class SensorApi {
  public:
-  /// `client` must outlive this.
+  /// `client` must outlive this object.
   explicit SensorApi(HttpClient* client) : client_(*client) {}
 
   std::optional<ouster::Metadata> FetchMetadata(ApiError* error);
 
-  /// Sends the values of `settings` that the sensor lacks, makes it apply them and reads them back.
-  /// Returns true if the sensor has all of them. `sleep` waits about a second, and ends the call if
-  /// it returns false.
+  /// Sends the values of `settings` that differ from the sensor's configuration, makes the sensor
+  /// apply them and reads them back. Returns true if the sensor has accepted all of them. `sleep`
+  /// waits about a second. If `sleep` returns false, this function gives up.
   bool Configure(const OusterSettings& settings, const std::function<bool()>& sleep,
                  ApiError* error);
-  /// Returns the destination of the sensor's packets, "192.0.2.1:7502"; empty if unknown.
+  /// Returns the destination of the sensor's packets, for example "192.0.2.1:7502", or an empty
+  /// text if it is not known.
   std::string Destination();
 
  private:

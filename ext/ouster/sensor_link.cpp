@@ -12,7 +12,7 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kFirstRetry{250};
 constexpr milliseconds kSlowestRetry{4000};
-constexpr milliseconds kPoll{500};  // while the sensor starts up
+constexpr milliseconds kPoll{500};  // interval between requests while the sensor starts up
 
 }  // namespace
 

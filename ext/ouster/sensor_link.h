@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Sends requests to the sensor in a thread of its own, so that packets never wait for an answer.
+// Sends requests to the sensor in a separate thread, so that packets never have to wait for an
+// answer.
 #pragma once
 #include <condition_variable>
 #include <functional>
@@ -16,22 +17,23 @@ namespace lidar::gst {
 class SensorLink {
  public:
   struct Result {
-    std::optional<ouster::Metadata> metadata;  // empty: the request failed
+    std::optional<ouster::Metadata> metadata;  // empty if the request failed
     ApiError error;
-    std::string destination;  // destination of the sensor's packets, if known
+    std::string destination;  // where the sensor sends its packets, if known
   };
 
-  /// Returns null and sets `error` for a malformed hostname, or if no thread can be made. The
-  /// thread calls `notify` when there is a result to take.
+  /// Returns null and sets `error` if the hostname is malformed or if no thread can be started. The
+  /// thread calls `notify` whenever Take() has a new result.
   static std::unique_ptr<SensorLink> Create(const OusterSettings& settings,
                                             std::function<void()> notify, std::string* error);
   ~SensorLink();
   SensorLink(const SensorLink&) = delete;
   SensorLink& operator=(const SensorLink&) = delete;
 
-  /// Configures the sensor as the settings ask and fetches its metadata. A request during another
-  /// one is ignored. A failure is a result, too; the link then tries again, ever more slowly,
-  /// unless the settings forbid it.
+  /// Starts a request, which configures the sensor according to the settings and fetches its
+  /// metadata. Does nothing if a request is already running. A failed request also has a result.
+  /// After a failure the request is repeated at increasing intervals, unless `reconnect` is false
+  /// or the error is permanent.
   void Request();
   bool busy() const;
   std::optional<Result> Take();
@@ -47,7 +49,7 @@ class SensorLink {
   const std::unique_ptr<HttpClient> client_;
   const std::function<void()> notify_;
 
-  mutable std::mutex mutex_;  // guards all below
+  mutable std::mutex mutex_;  // guards all members below
   std::condition_variable changed_;
   bool stopping_ = false;
   bool requested_ = false;

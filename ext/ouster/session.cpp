@@ -21,11 +21,11 @@
 namespace lidar::gst {
 namespace {
 
-// 8 bits per pixel and a header: more than the largest scan needs.
+// This is larger than a mask for the largest scan: a header, and 8 bits per pixel.
 constexpr std::size_t kMaxMaskSize = 32U << 20;
 
-/// Returns nothing for a file that cannot be read. Stops reading once the text has more than
-/// `max_size` bytes.
+/// Returns the content of the file, or nothing if it cannot be read. Stops reading once the text
+/// has more than `max_size` bytes.
 std::optional<std::string> ReadFile(const std::string& path, std::size_t max_size) {
   constexpr std::size_t kPiece = 1U << 16;
   std::ifstream file(path, std::ios::binary);
@@ -36,14 +36,15 @@ std::optional<std::string> ReadFile(const std::string& path, std::size_t max_siz
     file.read(&text[size], kPiece);
     text.resize(size + static_cast<std::size_t>(file.gcount()));
   }
-  // A folder can be opened, but not read, which sets bad(); the end of a file does not.
+  // A folder can be opened, but not read: reading it sets bad(). The end of a file does not set
+  // bad().
   if (!file.is_open() || file.bad()) return std::nullopt;
   return text;
 }
 
 using C = Counters;
 using B = ouster::BatcherStats;
-using D = ouster::StreamStats;  // of datagrams
+using D = ouster::StreamStats;  // counters of datagrams
 
 }  // namespace
 
@@ -202,7 +203,7 @@ GstClockTime Session::RunningTime() const {
   return now > base_time ? now - base_time : 0;
 }
 
-/// Counts of all streams so far.
+/// Returns the sum of the counters of all streams so far.
 Counters Session::Total() const {
   Counters now;
   now.batcher = stream_->batcher().stats();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The state of ouster_src from start to stop: takes packets of a sensor or a file, makes buffers.
+// The state of ouster_src between start and stop. It receives packets from a sensor or a file, and
+// returns buffers.
 #pragma once
 #include <gst/base/gstbasesrc.h>
 
@@ -16,7 +17,7 @@
 
 namespace lidar::gst {
 
-/// The counters of ouster_src, and its property `stats`.
+/// The counters of ouster_src, which its property `stats` shows.
 struct Counters {
   ouster::BatcherStats batcher;
   ouster::StreamStats stream;
@@ -27,7 +28,8 @@ struct Counters {
 };
 extern const std::array<Stat<Counters>, 17> kOusterStats;
 
-/// Runs in the streaming thread, except where a comment says otherwise. Posts its own errors.
+/// Methods are called in the streaming thread, except where a comment says otherwise. The session
+/// posts its own error messages.
 class Session {
  public:
   static std::shared_ptr<Session> Create(GstBaseSrc* element, const OusterSettings& settings);
@@ -35,27 +37,28 @@ class Session {
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  /// Called by the thread that starts the element. Returns false after an error was posted.
+  /// Opens the file or the sockets. Called by the thread that starts the element. If it fails,
+  /// posts an error message and returns false.
   virtual bool Open() = 0;
   GstFlowReturn Next(GstBuffer** out);
-  /// Next() returns FLUSHING until UnlockStop(). Any thread may call both.
+  /// Unlock() makes Next() return FLUSHING until UnlockStop() is called. Any thread may call both.
   virtual void Unlock() = 0;
   virtual void UnlockStop() = 0;
-  /// Call it when the pipeline plays, also after a pause. Any thread may call it.
+  /// Called when the pipeline starts to play, also after a pause. Any thread may call it.
   virtual void Resume() {}
 
-  /// Returns true if Seek() works.
+  /// Returns true if Seek() is supported.
   virtual bool seekable() const { return false; }
-  /// Makes Next() return the slices of `segment`. Do not call it while Next() runs.
+  /// Makes Next() return the slices of `segment`. Must not be called while Next() runs.
   virtual void Seek(const GstSegment& segment) {
     start_ = segment.start;
     ended_ = false;
     imu_.SetSegment(segment);
   }
-  /// The duration, if it is known. Any thread may call this; it may read a file.
+  /// Returns the duration if it is known. May read a file. Any thread may call it.
   virtual std::optional<GstClockTime> duration() { return std::nullopt; }
 
-  /// Any thread may call these.
+  /// Any thread may call the following methods.
   ImuPad& imu() { return imu_; }
   Counters counters() const;
   GstClockTime slice_duration() const;
@@ -63,13 +66,14 @@ class Session {
  protected:
   Session(GstBaseSrc* element, OusterSettings settings);
 
-  /// Waits for packets and takes them. After OK, Next() looks for slices and calls Poll() again.
+  /// Waits for packets and processes them. If it returns OK, Next() looks for slices and then calls
+  /// Poll() again.
   virtual GstFlowReturn Poll() = 0;
   virtual void AddCounters(Counters*) const {}
 
-  /// Returns nothing after an error was posted.
+  /// Loads the metadata file. If it fails, posts an error message and returns nothing.
   std::optional<ouster::Metadata> LoadMetadata();
-  /// Uses the described sensor from now on. Returns false after an error message.
+  /// Uses `metadata` from now on. If it fails, posts an error message and returns false.
   bool SetMetadata(ouster::Metadata metadata);
   ouster::PacketVerdict Push(ByteView payload, const ouster::Arrival& arrival);
   void UpdateCounters();
@@ -79,7 +83,7 @@ class Session {
   GstElement* gst_element() const { return GST_ELEMENT(element_); }
   const OusterSettings& settings() const { return settings_; }
   ouster::SensorStream* stream() const { return stream_.get(); }
-  /// 0 before the pipeline runs.
+  /// Returns 0 before the pipeline runs.
   GstClockTime RunningTime() const;
 
  private:
@@ -95,8 +99,8 @@ class Session {
   bool caps_pending_ = false;
   bool discont_ = false;
   bool ended_ = false;
-  GstClockTime start_ = 0;  // slices that end before it are left out
-  Counters base_;           // of earlier streams
+  GstClockTime start_ = 0;  // slices that end before this time are dropped
+  Counters base_;           // counters of earlier streams
   LossReport loss_report_;
 
   mutable std::mutex mutex_;  // guards all below; never held while waiting, pushing or posting

@@ -52,19 +52,22 @@ struct OusterSettings {
   gint invalid = kInvalidZero;
   bool destagger = false;
 
-  /// UDP is always live; the user decides for files.
+  /// Returns true if the source is live. It is always live for UDP, and for files if `is_live` is
+  /// set.
   bool live() const { return location.empty() || is_live; }
   bool from_file() const { return !location.empty(); }
-  /// Path of the metadata: the user's, or the capture's with the extension json. Empty: unknown.
+  /// Returns the path of the metadata: the property metadata, or else the path of the capture with
+  /// the extension json. Returns an empty text if both properties are empty.
   std::string MetadataPath() const;
 };
 
-/// The property `stats` of the element.
+/// Returns the value of the property `stats`.
 StructurePtr OusterStats(GObject* source);
 
 extern const std::array<Property<OusterSettings>, 31> kOusterProperties;
 
-/// Returns nothing and sets `error`, for a user, if properties contradict each other.
+/// Converts the properties. If two properties contradict each other, returns nothing and sets
+/// `error` to a text for the user.
 std::optional<ouster::StreamOptions> ToStreamOptions(const OusterSettings& settings,
                                                      std::string* error);
 

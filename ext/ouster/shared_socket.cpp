@@ -28,10 +28,10 @@ GSocket* OpenSocket(const SocketPlace& place, GError** error) {
 
 }  // namespace
 
-/// A socket of the process: all elements that use its place share it.
+/// A socket that all elements of the process share if they use the same address, port and group.
 class SharedSocket {
  public:
-  /// Opens the reader's socket, or joins its other readers.
+  /// Connects the reader to the socket of its place, and opens the socket if it is not open yet.
   static bool Attach(SocketReader* reader, GError** error) {
     std::lock_guard lock(RegistryMutex());
     auto& slot = Registry()[reader->place_];
@@ -67,7 +67,7 @@ class SharedSocket {
 
   int fd() const { return g_socket_get_fd(socket_.get()); }
 
-  /// Fills the reader's taken_ and arrived_ from its queue, then from the socket.
+  /// Moves the reader's queue to its `taken_`, then receives from the socket into its `arrived_`.
   bool TakeFor(SocketReader* reader) {
     std::lock_guard lock(mutex_);
     reader->taken_.swap(reader->queue_);
@@ -98,7 +98,9 @@ class SharedSocket {
   }
 
   const std::unique_ptr<GSocket, GObjectUnref> socket_;
-  std::mutex mutex_;  // guards all below, the readers' queues, and the order of what is read
+  // Guards all members below and the readers' queues. It is held while the socket is read, so that
+  // all readers get the datagrams in the same order.
+  std::mutex mutex_;
   std::vector<SocketReader*> readers_;
   guint granted_buffer_ = 0;
   guint64 kernel_drops_ = 0;
@@ -119,7 +121,8 @@ int SocketReader::socket_fd() const { return socket_->fd(); }
 
 void SocketReader::Enqueue(const ReceivedDatagram& datagram) {
   if (datagram.size == 0) return;
-  // A small datagram takes less memory than the entry that holds it.
+  // The cost includes the entry that holds the datagram, because the entry of a small datagram
+  // takes more memory than its bytes.
   const gsize cost = sizeof(Copy) + datagram.size;
   if (queued_bytes_ + cost > std::max<gsize>(queue_bytes_, kSmallestQueue)) {
     ++queue_overflows_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// UDP sockets that the sources of one process share, since the kernel gives a unicast datagram to
-// one socket only: several sensors may send to one port.
+// UDP sockets that all sources of a process share. Several sensors may send to the same port, but
+// the kernel passes a unicast datagram to only one socket.
 #pragma once
 #include <gst/gst.h>
 
@@ -15,12 +15,12 @@
 
 namespace lidar::gst {
 
-/// Readers that ask for the same place share its socket.
+/// The addresses that a socket is bound to. Readers that ask for the same place share one socket.
 struct SocketPlace {
-  std::string address;  // local; empty: any
+  std::string address;  // local address; empty for any
   guint port = 0;
-  std::string group;      // multicast; may be empty
-  std::string interface;  // of the group; empty: the kernel's choice
+  std::string group;      // multicast group; may be empty
+  std::string interface;  // interface for the group; empty: chosen by the kernel
 
   bool operator<(const SocketPlace& o) const {
     return std::tie(address, port, group, interface) <
@@ -30,27 +30,32 @@ struct SocketPlace {
 
 class SharedSocket;
 
-/// A reader of a socket; every reader gets every datagram in the order of arrival. Receive() reads
-/// the socket and leaves copies for the other readers, so no extra thread is needed and a lone
-/// reader copies nothing. For one thread.
+/// A reader of a shared socket. Every reader gets every datagram, in the order of arrival.
+/// Receive() reads from the socket and puts copies into the queues of all other readers. So no
+/// extra thread is needed, and if there is only one reader, nothing is copied. A reader is used by
+/// one thread.
 class SocketReader {
  public:
-  /// `queue_bytes` bounds the reader's queue, and the kernel's buffer of the socket; 0: the
-  /// kernel's default. Returns null and `error` if the socket cannot be opened.
+  /// Opens a reader. `queue_bytes` is the limit of the reader's queue and the size of the socket's
+  /// receive buffer; 0 for the kernel's default. Returns null and sets `error` if the socket cannot
+  /// be opened.
   static std::unique_ptr<SocketReader> Open(const SocketPlace& place, guint queue_bytes,
                                             GError** error);
   ~SocketReader();
   SocketReader(const SocketReader&) = delete;
   SocketReader& operator=(const SocketReader&) = delete;
 
-  /// Descriptors to wait for: at least one is readable while Receive() may find datagrams.
+  /// The file descriptors to wait for. At least one of the two is readable while Receive() may find
+  /// datagrams.
   int socket_fd() const;
   int queue_fd() const { return queued_.fd(); }
-  /// Gives the datagrams to `consume`; returns false with errno set if the socket failed.
+  /// Passes all available datagrams to `consume`. If the socket failed, returns false and sets
+  /// errno.
   bool Receive(const std::function<void(const ReceivedDatagram&)>& consume);
 
   guint granted_buffer() const { return granted_buffer_; }  // bytes
-  /// Number of datagrams lost because the socket's buffer, or the queue here, was full.
+  /// Returns the number of datagrams that were lost because the socket's buffer or the reader's
+  /// queue was full.
   guint64 drops() const { return kernel_drops_ + queue_drops_; }
 
  private:
@@ -71,11 +76,11 @@ class SocketReader {
   UdpBatchReceiver batch_;
   std::vector<Copy> taken_;
   std::vector<ReceivedDatagram> arrived_;
-  guint64 drops_before_ = 0;  // kernel's count when this reader was opened
+  guint64 drops_before_ = 0;  // the socket's kernel_drops_ when this reader was opened
   guint64 kernel_drops_ = 0;
   guint64 queue_drops_ = 0;
 
-  // Guarded by the socket's mutex.
+  // The members below are guarded by the mutex of the socket.
   std::vector<Copy> queue_;
   gsize queued_bytes_ = 0;
   guint64 queue_overflows_ = 0;

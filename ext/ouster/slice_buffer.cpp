@@ -27,8 +27,8 @@ GstCaps* CapsOf(const ouster::SensorStream& stream) {
     info.framerate_n = static_cast<gint>(metadata.scans_per_second * kMaxDenominator + 0.5);
     info.framerate_d = kMaxDenominator;
   }
-  // A model has one direction for each beam, and columns in the order of measurement ids. It does
-  // not describe sensors with a direction for each pixel, nor beams that were shifted.
+  // A sensor model has one direction for each beam, and columns in the order of measurement ids. It
+  // cannot describe a sensor with a direction for each pixel, nor beams that were destaggered.
   if (metadata.pixel_angles.empty() && !stream.options().points.destagger)
     info.sensor_model = metadata.model;
   return info.ToCaps();

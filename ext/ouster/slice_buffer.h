@@ -7,12 +7,12 @@
 
 namespace lidar::gst {
 
-/// Time since the Unix epoch; 0 for a time before it.
+/// Returns the time since the Unix epoch, or 0 for a time before the epoch.
 GstClockTime ToClockTime(Time time);
-/// transfer full
+/// Returns the caps of the stream's buffers (transfer full).
 GstCaps* CapsOf(const ouster::SensorStream& stream);
-/// Takes the points without a copy. PTS is slice.local, counted from the zero of its clock;
-/// transfer full.
+/// Converts the slice to a buffer (transfer full). The points are not copied. The PTS is
+/// slice.local, counted from the epoch of its clock.
 GstBuffer* ToBuffer(ouster::TimedSlice slice, Duration duration);
 
 }  // namespace lidar::gst

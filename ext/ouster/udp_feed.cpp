@@ -22,7 +22,8 @@ std::string Explain(const GError& error, guint port) {
   return text;
 }
 
-/// Opens the socket of `port` with the settings. Returns null and `why`, for a user, if it fails.
+/// Opens the socket of `port` with the settings. If it fails, returns null and sets `why` to a text
+/// for the user.
 std::unique_ptr<SocketReader> OpenReader(const OusterSettings& settings, guint port,
                                          std::string* why) {
   GError* raw_error = nullptr;
@@ -72,7 +73,8 @@ bool UdpFeed::IsOpen(const Ports& ports) const {
 }
 
 void UdpFeed::Close() {
-  // A socket that other readers still use stays in the epoll set unless it is removed.
+  // Closing a reader does not close its socket if other readers still use it. The socket must
+  // therefore be removed from the epoll set.
   for (const ReaderPtr* reader : {&lidar_, &imu_})
     if (*reader)
       for (const int fd : {(*reader)->socket_fd(), (*reader)->queue_fd()})
