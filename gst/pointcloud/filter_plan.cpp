@@ -12,7 +12,8 @@
 namespace lidar::gst {
 namespace {
 
-/// Parses caps of either byte order as little-endian ones, the only ones that CloudInfo takes.
+/// Parses caps of either byte order. CloudInfo accepts only little-endian caps, so the byte order
+/// is returned in `big_endian`.
 std::optional<CloudInfo> ParseCaps(const GstCaps* caps, bool* big_endian, std::string* why) {
   const CapsPtr copy(gst_caps_copy(caps));
   gboolean flag = FALSE;
@@ -22,8 +23,8 @@ std::optional<CloudInfo> ParseCaps(const GstCaps* caps, bool* big_endian, std::s
   return CloudInfo::FromFrameCaps(copy.get(), why);
 }
 
-/// Parses "x,y,z,intensity" or, with types, "x:F32,intensity:U8", packed. Offsets, as in caps, are
-/// ignored.
+/// Parses names such as "x,y,z,intensity", or names with types such as "x:F32,intensity:U8". The
+/// fields of the result are packed. Offsets, which caps have after the types, are ignored.
 std::optional<cdr::PointLayout> ParseWanted(const std::string& text, const PointFields& given,
                                             std::string* why) {
   std::istringstream in(text);
@@ -36,7 +37,7 @@ std::optional<cdr::PointLayout> ParseWanted(const std::string& text, const Point
       *why = "there is no field " + name + "; the cloud has " + given.ToString();
       return std::nullopt;
     }
-    // Coordinates are F32, unless another type is requested: all elements take F32.
+    // Coordinates are F32 unless another type is requested, because all elements accept F32.
     const bool is_axis = name == "x" || name == "y" || name == "z";
     FieldType type = is_axis ? FieldType::kF32 : field->type;
     if (colon != std::string::npos) {
@@ -92,19 +93,21 @@ std::optional<Transform> PoseOf(GstBuffer* buffer) {
   return FromPose({p[0], p[1], p[2]}, {q[0], q[1], q[2], q[3]});
 }
 
-/// Returns the frame of the clouds from the settings or the caps.
+/// Returns the frame of the clouds, from the settings or else from the caps.
 std::string FrameOf(const FilterSettings& settings, const GstCaps* caps) {
   if (!settings.frame_id.empty()) return settings.frame_id;
   return FrameIn(gst_caps_get_structure(caps, 0), GST_LIDAR_FRAME_ID);
 }
 
-/// Removes the pose of moved points, so that the next element does not move them again.
+/// Removes the pose from a buffer whose points have been moved by it. Otherwise the next element
+/// would move them again.
 void DropPose(GstBuffer* buffer) {
   GstCustomMeta* meta = gst_buffer_get_custom_meta(buffer, GST_LIDAR_POSE_META_NAME);
   if (meta != nullptr) gst_buffer_remove_meta(buffer, &meta->meta);
 }
 
-/// Keeps the sensor model of the remaining beams if it still gives the points' positions.
+/// Keeps the sensor model, reduced to the remaining beams, if it still describes the positions of
+/// the points. Otherwise removes the model.
 void KeepModel(const PointFilterSettings& s, CloudInfo* out) {
   if (!out->sensor_model) return;
   if (s.has_pose || s.transform || s.column_step > 1 || s.invalid == InvalidPoints::kRemove) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The work of pointcloudfilter for given caps.
+// Filters the clouds of pointcloudfilter, prepared for given caps and settings.
 #pragma once
 #include <gst/gst.h>
 
@@ -15,7 +15,7 @@
 
 namespace lidar::gst {
 
-/// The properties, as they are set.
+/// The values of the properties.
 struct FilterSettings {
   std::string fields;
   std::string crop_box;
@@ -26,8 +26,8 @@ struct FilterSettings {
   guint beam_step = 1;
   guint column_step = 1;
   bool apply_pose = false;
-  std::string frame_id;      // of the clouds; empty: as their caps say
-  std::string target_frame;  // frame to which transforms move the clouds
+  std::string frame_id;      // frame of the clouds; empty: as in their caps
+  std::string target_frame;  // frame to which clouds are moved by transforms
   Duration tf_timeout = std::chrono::milliseconds(200);
   std::string transform;
   InvalidPoints invalid = InvalidPoints::kKeep;
@@ -35,22 +35,24 @@ struct FilterSettings {
 
 class FilterPlan {
  public:
-  /// Returns nothing if the settings are wrong or impossible for clouds of `caps`; `why` has the
-  /// reason for a user.
+  /// Makes a plan for clouds of `caps`. If the settings are invalid, or impossible for these
+  /// clouds, returns null and sets `why` to a reason for the user.
   static std::unique_ptr<FilterPlan> Make(const FilterSettings& settings, const GstCaps* caps,
                                           std::string* why);
 
-  /// Returns the filtered cloud without metas, or null if `buffer` contradicts the caps. An empty
-  /// cloud has no bytes. `placed` is the transform to the target frame, if there is one.
+  /// Returns the filtered cloud, or null if the size of `buffer` contradicts the caps. If no point
+  /// remains, the result is an empty buffer. `placed` is the transform to the target frame, if
+  /// there is one.
   BufferPtr Apply(GstBuffer* buffer, const Transform& placed = kIdentity);
-  /// Caps of the last cloud from Apply().
+  /// Returns the caps of the cloud that Apply() returned last.
   GstCaps* caps() const { return caps_.get(); }
-  /// The fields of that cloud, with their types and offsets.
+  /// Returns the fields of clouds from Apply(), with their types and offsets.
   std::string fields() const { return out_.fields.ToString(); }
   std::uint64_t removed() const { return filter_->removed(); }
-  /// Number of clouds dropped because they lack the pose that they need.
+  /// Returns the number of clouds that were dropped because they had no pose, although they need a
+  /// pose.
   std::uint64_t without_pose() const { return without_pose_; }
-  /// Frame of incoming clouds.
+  /// Returns the frame of the incoming clouds.
   const std::string& frame() const { return frame_; }
 
  private:
@@ -63,9 +65,9 @@ class FilterPlan {
   std::optional<PointFilter> filter_;
   guint column_step_ = 1;
   bool apply_pose_ = false;
-  bool drops_pose_ = false;  // points move out of the frame that the pose describes
+  bool drops_pose_ = false;  // true if points are moved, so that their pose is no longer valid
   std::string frame_;
-  std::string out_frame_;  // empty: not known
+  std::string out_frame_;  // empty if not known
   std::uint64_t without_pose_ = 0;
   std::vector<std::uint8_t> converted_;
   CapsPtr caps_;

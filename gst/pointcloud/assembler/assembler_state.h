@@ -21,27 +21,28 @@ struct AssemblerSettings {
 
 struct AssemblerState {
   AssemblerState() { gst_segment_init(&segment, GST_FORMAT_TIME); }
-  /// Resets all except the settings and the timer. The mutex must be held.
+  /// Resets everything except the settings and the timer. The caller must hold the mutex.
   void Reset();
-  /// The property `stats`; takes the mutex.
+  /// Returns the property `stats`. Locks the mutex.
   StructurePtr Stats();
 
-  // Guards all members down to `timer`. The sink pad's streaming lock orders the output: the chain
-  // function holds it, and the timer takes it before this mutex.
+  // Guards the members from `settings` to `timer`. The order of the output is protected by the
+  // stream lock of the sink pad, which the chain function holds. The timer's thread locks the
+  // stream lock before this mutex.
   std::mutex mutex;
   AssemblerSettings settings;
   ScanQueue queue;
-  std::optional<CloudInfo> info;  // of the slices
+  std::optional<CloudInfo> info;  // describes the slices
   CapsPtr in_caps;
-  guint out_width = 0;  // in the caps sent last; 0: to be sent again
+  guint out_width = 0;  // width in the caps that were sent last; 0: caps must be sent again
   bool caps_sent = false;
-  EventPtr early_segment;           // waits for the caps
+  EventPtr early_segment;           // a segment that arrived before the caps were sent
   std::optional<Latency> upstream;  // known after the first query
-  GstClockTime scan_latency = 0;    // a scan's part of the reported latency, without max-wait
+  GstClockTime scan_latency = 0;    // latency of a whole scan, without max-wait
   GstSegment segment;
   DeadlineTimer timer;
 
-  // Only the streaming thread uses these.
+  // The members below are used by the streaming thread only.
   RefusedCaps refused;
   bool missing_meta_reported = false;
 };

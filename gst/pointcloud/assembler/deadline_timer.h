@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A thread's wait for the earliest of some deadlines, on the clock of an element.
+// Lets a thread wait for the earliest of several deadlines, on the clock of an element.
 #pragma once
 #include <gst/gst.h>
 
@@ -9,18 +9,20 @@
 
 namespace lidar::gst {
 
-/// Every call is made with the same mutex held, which guards the deadlines too.
+/// A timer for a thread that waits for deadlines. A mutex guards the deadlines, and must be held
+/// during every call.
 class DeadlineTimer {
  public:
-  /// Waits without the mutex until the earliest deadline, which `next` has in the element's running
-  /// time (NONE: no deadline). Returns true when it has passed. Returns false if the thread was
-  /// woken: then the thread checks flushing() and waits again.
+  /// Waits until the earliest deadline, with the mutex unlocked. `next` returns this deadline in
+  /// the running time of the element, or NONE if there is no deadline. Returns true if the deadline
+  /// has passed. Returns false if the thread was woken; the thread must then check flushing() and
+  /// wait again.
   bool Wait(std::unique_lock<std::mutex>* lock, GstElement* element,
             const std::function<GstClockTime()>& next);
-  /// Call it when the deadlines change or the element gets a clock. `next` is the earliest
+  /// Notes that the deadlines have changed, or that the element got a clock. `next` is the earliest
   /// deadline.
   void Update(GstClockTime next);
-  /// Wait() returns at once while flushing.
+  /// Makes Wait() return at once while `flushing` is true.
   void SetFlushing(bool flushing);
   bool flushing() const { return flushing_; }
 
@@ -28,7 +30,7 @@ class DeadlineTimer {
   std::condition_variable changed_;
   bool flushing_ = true;
   GstClockID wait_ = nullptr;
-  GstClockTime deadline_ = GST_CLOCK_TIME_NONE;  // deadline of the present wait
+  GstClockTime deadline_ = GST_CLOCK_TIME_NONE;  // the deadline that Wait() waits for now
 };
 
 }  // namespace lidar::gst

@@ -54,7 +54,7 @@ static const std::array<Property<Settings>, 2> kProperties = {{
     {"stats", "Counters: scans, incomplete, late-slices, duplicate-slices, invalid-slices", Stats},
 }};
 
-/// Pushes the caps of a scan: those of its slices with the scan's width.
+/// Pushes the caps of a scan, which are the caps of its slices with the width of the scan.
 static void PushCaps(GstLidarScanAssembler* self, guint width) {
   State& state = *self->state;
   CapsPtr caps;
@@ -71,8 +71,8 @@ static void PushCaps(GstLidarScanAssembler* self, guint width) {
   if (segment) gst_pad_push_event(self->srcpad, segment.release());
 }
 
-/// Pushes the segment that waits for a first scan, which will not come. Caps must precede the
-/// segment; they describe a full turn.
+/// Pushes the segment that was held back for the first scan, because at EOS no scan can follow.
+/// Caps must precede the segment, so this pushes caps that describe a full turn.
 static void PushEarlySegment(GstLidarScanAssembler* self) {
   State& state = *self->state;
   guint width = 0;
@@ -85,7 +85,7 @@ static void PushEarlySegment(GstLidarScanAssembler* self) {
   PushCaps(self, width);
 }
 
-/// The caller holds the streaming lock, but not the mutex.
+/// Pushes the finished scans. The caller holds the stream lock, but not the mutex.
 static GstFlowReturn PushScans(GstLidarScanAssembler* self, ScanQueue::Finished* finished) {
   GstFlowReturn flow = GST_FLOW_OK;
   for (auto& scan : *finished) {
@@ -107,7 +107,8 @@ static GstFlowReturn PushAll(GstLidarScanAssembler* self) {
   return PushScans(self, &finished);
 }
 
-/// Computes the latency of scans of `slices` slices, and posts a message when it changes.
+/// Computes the latency that scans of `slices` slices need. Posts a latency message if it has
+/// changed.
 static void UpdateLatency(GstLidarScanAssembler* self, const CloudInfo& info, guint slices) {
   State& state = *self->state;
   const GstClockTime scan = info.ScanDuration();
@@ -127,7 +128,7 @@ static void LearnUpstreamLatency(GstLidarScanAssembler* self) {
   self->state->upstream = answered ? ReadLatency(query.get()) : Latency();
 }
 
-/// Passes a buffer that is a whole scan.
+/// Pushes a buffer that is a whole scan already.
 static GstFlowReturn PassThrough(GstLidarScanAssembler* self, GstBuffer* buffer, guint width) {
   GstFlowReturn flow = PushAll(self);
   if (flow != GST_FLOW_OK) {
@@ -138,7 +139,8 @@ static GstFlowReturn PassThrough(GstLidarScanAssembler* self, GstBuffer* buffer,
   return gst_pad_push(self->srcpad, buffer);
 }
 
-/// Warns of a scan with too few columns: it may be a slice that lost its meta.
+/// Warns if a buffer without meta has fewer columns than a scan of the sensor. The buffer may be a
+/// slice that lost its meta.
 static void ReportMissingMeta(GstLidarScanAssembler* self, const CloudInfo& info) {
   State& state = *self->state;
   if (!info.sensor_model || info.width >= info.sensor_model->columns_per_scan) return;
@@ -183,7 +185,8 @@ static GstFlowReturn Chain(GstPad*, GstObject* parent, GstBuffer* buffer) {
     if (state.queue.counters().invalid != invalid)
       GST_WARNING_OBJECT(self, "dropping slice %u of %u of scan %u, which does not fit a scan",
                          slice.meta.slice_index, slice.meta.slice_count, slice.meta.scan_id);
-    // Timestamps may have restarted, and the timer may still wait for an earlier scan.
+    // The timer may be waiting for the deadline of an earlier scan, and timestamps may have
+    // restarted.
     state.timer.Update(state.queue.NextDeadline());
   }
   return PushScans(self, &finished);
@@ -199,7 +202,7 @@ static void FinishDue(GstLidarScanAssembler* self, ScanQueue::Finished* finished
   gst_object_unref(clock);
 }
 
-/// The source pad's task: pushes scans whose deadline has passed.
+/// The task of the source pad. It pushes scans whose deadline has passed.
 static void TimerLoop(gpointer data) {
   auto* self = GST_LIDAR_SCAN_ASSEMBLER(data);
   State& state = *self->state;
@@ -211,7 +214,8 @@ static void TimerLoop(gpointer data) {
     GST_PAD_STREAM_LOCK(self->sinkpad);
     ScanQueue::Finished finished;
     FinishDue(self, &finished);
-    // The chain function returns errors of downstream; this task has no caller for them.
+    // The result is ignored, because this task has no caller. The chain function returns errors of
+    // downstream.
     PushScans(self, &finished);
     GST_PAD_STREAM_UNLOCK(self->sinkpad);
   }
@@ -228,7 +232,8 @@ static void SetFlushing(GstLidarScanAssembler* self, bool flushing) {
 static void TakeCaps(GstLidarScanAssembler* self, GstCaps* caps, CloudInfo&& info) {
   State& state = *self->state;
   std::lock_guard lock(state.mutex);
-  // Slices of unorganised clouds differ in width, which does not change the caps of the scan.
+  // If clouds are not organised, their slices differ in width. The width of a slice does not change
+  // the caps of the scan.
   if (!state.in_caps || !SameButForWidth(caps, state.in_caps.get())) state.out_width = 0;
   state.in_caps.reset(gst_caps_ref(caps));
   state.info = std::move(info);
@@ -254,18 +259,20 @@ static gboolean HandleCaps(GstLidarScanAssembler* self, GstEvent* event) {
     std::lock_guard lock(state.mutex);
     scan_changes = state.info && CannotMix(*state.info, *info);
   }
-  // The slices of open scans have the old caps, so these scans leave with the old caps.
+  // The slices of unfinished scans have the old caps, so these scans are pushed before the caps
+  // change.
   if (scan_changes) PushAll(self);
   TakeCaps(self, caps, *std::move(info));
   return TRUE;
 }
 
-/// Stores the segment until the caps are sent. Returns true if the function took the event.
+/// Keeps the segment until caps have been sent. Returns true if it took ownership of the event.
 static bool HoldSegment(GstLidarScanAssembler* self, GstEvent* event) {
   State& state = *self->state;
   const GstSegment* segment = nullptr;
   gst_event_parse_segment(event, &segment);
-  // Open scans belong to the segment that they began in.
+  // Unfinished scans belong to the segment in which they began, so they are pushed before it
+  // changes.
   if (!gst_segment_is_equal(segment, &state.segment)) PushAll(self);
   std::lock_guard lock(state.mutex);
   gst_segment_copy_into(segment, &state.segment);
@@ -298,8 +305,8 @@ static gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
       PushEarlySegment(self);
       break;
     case GST_EVENT_GAP: {
-      // A gap within a scan needs no event, because the incomplete scan is flagged. Before the
-      // first scan no caps and no segment were sent, so a GAP event cannot pass.
+      // A gap within a scan needs no event, because the incomplete scan is flagged. A GAP event
+      // before the first scan is dropped, because neither caps nor a segment have been sent yet.
       std::unique_lock lock(state.mutex);
       if (state.queue.empty() && state.caps_sent) break;
       lock.unlock();

@@ -11,7 +11,8 @@ namespace {
 constexpr guint kMaxSlices = 4096;
 constexpr gsize kMaxScanSize = gsize{1} << 29;
 
-/// Columns of a full turn. If there is no sensor model, all slices together are one turn.
+/// Returns the number of columns of a full turn. Without a sensor model, all slices of a scan
+/// together count as one turn.
 guint ColumnsPerTurn(const CloudInfo& info, guint slices) {
   return info.sensor_model ? info.sensor_model->columns_per_scan : info.width * slices;
 }
@@ -29,7 +30,8 @@ bool ScanBuilder::IsSane(const SliceView& slice) {
   }
   if (!IsOrganised(*slice.info)) return slice.info->FrameSize() * meta.slice_count <= kMaxScanSize;
   const guint64 columns = guint64{slice.info->width} * meta.slice_count;
-  // An azimuth window is padded to whole slices, so it may exceed the turn by less than a slice.
+  // An azimuth window is padded to a multiple of the slice width, so it may exceed a full turn by
+  // less than the width of a slice.
   const guint64 most = slice.info->sensor_model
                            ? guint64{slice.info->sensor_model->columns_per_scan} + slice.info->width
                            : SensorModel::kMaxColumns;
@@ -76,8 +78,8 @@ void ScanBuilder::TakeTimes(const SliceView& slice) {
   GstClockTime sweep = GST_BUFFER_DURATION(slice.buffer);
   if (!GST_CLOCK_TIME_IS_VALID(sweep)) sweep = GST_CLOCK_TIME_IS_VALID(scan) ? scan / slices : 0;
   const GstClockTime before = sweep * slice.meta.slice_index;
-  // The first slice has the exact time; until it comes, the time is counted back from another
-  // slice.
+  // The time of the first slice is exact. Until the first slice arrives, the time of the scan is
+  // extrapolated back from another slice.
   const auto take = [&](GstClockTime time, GstClockTime* of_scan) {
     if (!GST_CLOCK_TIME_IS_VALID(time)) return;
     if (slice.meta.slice_index == 0 || !GST_CLOCK_TIME_IS_VALID(*of_scan))

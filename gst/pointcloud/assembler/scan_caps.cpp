@@ -6,7 +6,7 @@ namespace lidar::gst {
 CapsPtr ScanCaps(const GstCaps* slice, const CloudInfo& slice_info, guint width) {
   CapsPtr caps(gst_caps_copy(slice));
   gst_caps_set_simple(caps.get(), "width", G_TYPE_INT, static_cast<gint>(width), nullptr);
-  // Dense slices do not make a dense scan when one is lost.
+  // A scan of dense slices is not dense if one of the slices is lost.
   if (ScanBuilder::IsOrganised(slice_info) && width != slice_info.width)
     gst_caps_set_simple(caps.get(), "is-dense", G_TYPE_BOOLEAN, FALSE, nullptr);
   return caps;

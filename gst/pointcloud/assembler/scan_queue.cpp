@@ -7,8 +7,8 @@ namespace lidar::gst {
 namespace {
 
 constexpr std::size_t kMaxOpen = 2;
-// The sender has restarted if a scan's id is this far below the newest: no network reorders so many
-// scans.
+// If the id of a scan is this far below the newest id, the sender has restarted, because no network
+// reorders scans by so much.
 constexpr int kRestart = 16;
 
 }  // namespace
@@ -19,8 +19,8 @@ ScanQueue::Open* ScanQueue::Find(const SliceView& slice) {
   return nullptr;
 }
 
-/// Compares a scan with the open scans and with those that left. Finishes all open scans if the
-/// sender has restarted.
+/// Compares the scan with the scans that are open or finished. If the sender has restarted,
+/// finishes all open scans.
 ScanQueue::Age ScanQueue::AgeOf(guint scan_id, Finished* finished) {
   const auto newest = open_.empty() ? newest_left_ : open_.back().builder.scan_id();
   if (!newest) return Age::kNew;
@@ -62,7 +62,7 @@ void ScanQueue::Add(const SliceView& slice, GstClockTime deadline, Finished* fin
   }
   if (!open->builder.complete()) return;
   const guint id = open->builder.scan_id();
-  // Older scans do not wait once a whole newer scan is there.
+  // Once a newer scan is complete, older scans no longer wait for their missing slices.
   while (newest_left_ != id) FinishFront(finished);
 }
 

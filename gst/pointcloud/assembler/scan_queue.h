@@ -10,30 +10,31 @@
 namespace lidar::gst {
 
 struct ScanCounters {
-  guint64 scans = 0;       // number that left
-  guint64 incomplete = 0;  // number of incomplete ones among them
-  guint64 late = 0;        // slices that came after their scan had left
+  guint64 scans = 0;       // number of finished scans
+  guint64 incomplete = 0;  // number of finished scans with missing slices
+  guint64 late = 0;        // number of slices that arrived after their scan was finished
   guint64 duplicates = 0;
   guint64 invalid = 0;
 };
 
-/// At most two scans are open: the one that the sensor sweeps, and the one before, whose last
-/// slices may still be under way. Scans leave in order. The queue has no clock: times are the
-/// caller's running time.
+/// Assembles scans and finishes them in order. At most two scans are open: the scan that the sensor
+/// is measuring now, and the scan before it, whose last slices may still arrive. The queue has no
+/// clock; all times are running times that the caller passes.
 class ScanQueue {
  public:
   using Finished = std::vector<FinishedScan>;
 
-  /// Takes a slice, and appends the scans that it completes or displaces. A scan that begins with
-  /// this slice may stay until `deadline`; NONE: until a slice of the next scan.
+  /// Adds a slice. Appends to `finished` the scans that the slice completes, and older scans that
+  /// it displaces. If the slice begins a scan, the scan waits for further slices until `deadline`.
+  /// If `deadline` is NONE, it waits until a slice of the next scan is added.
   void Add(const SliceView& slice, GstClockTime deadline, Finished* finished);
-  /// Appends the scans whose deadline is not after `now`.
+  /// Finishes the scans whose deadline is `now` or earlier, and appends them to `finished`.
   void FinishDue(GstClockTime now, Finished* finished);
   void FinishAll(Finished* finished);
-  /// Forgets everything, as after a flush.
+  /// Drops all open scans, and forgets which scans have been finished, for example after a flush.
   void Clear();
 
-  /// Earliest deadline, NONE if there is none.
+  /// Returns the earliest deadline, or NONE if no scan has a deadline.
   GstClockTime NextDeadline() const;
   bool empty() const { return open_.empty(); }
   const ScanCounters& counters() const { return counters_; }
@@ -51,7 +52,7 @@ class ScanQueue {
   void FinishFront(Finished* finished);
 
   std::deque<Open> open_;
-  std::optional<guint> newest_left_;  // id of the newest scan that left
+  std::optional<guint> newest_left_;  // id of the newest finished scan
   ScanCounters counters_;
 };
 

@@ -40,8 +40,9 @@ TypeText TextOf(FieldType type) {
   return {'F', "double"};
 }
 
-/// Replaces characters that would break a header, because names come from caps. Makes names unique,
-/// because readers drop the second of two fields with the same name.
+/// Returns field names that are safe in a file header. Names come from caps, so characters that
+/// would break the header are replaced. Names are also made unique, because readers ignore the
+/// second of two fields with the same name.
 std::vector<std::string> SafeNames(const PointFields& fields) {
   std::vector<std::string> names;
   for (const PointField& f : fields.all()) {
@@ -59,7 +60,8 @@ bool IsCoordinate(const PointField& field) {
          (field.name == "x" || field.name == "y" || field.name == "z");
 }
 
-/// Appends the shortest text that reads back as the same number in any locale.
+/// Appends the shortest text that is parsed to exactly the same number. The text does not depend on
+/// the locale.
 void AppendText(FieldType type, const std::uint8_t* at, std::string* out) {
   WithTypeOf(type, [&](auto value) {
     std::memcpy(&value, at, sizeof value);
@@ -73,7 +75,7 @@ void AppendText(FieldType type, const std::uint8_t* at, std::string* out) {
   });
 }
 
-/// Writes the points, with all fields and without the gaps between them.
+/// Writes points with all fields, but without the gaps between fields.
 class PointWriter {
  public:
   explicit PointWriter(const CloudFileInput& cloud)
@@ -98,8 +100,8 @@ class PointWriter {
     for (gsize i = 0; i < cloud_.info->Points(); ++i) count += HasReturn(At(i)) ? 1U : 0U;
     return count;
   }
-  /// Appends the points. With `keep_missing`, coordinates of points without a return are NaN;
-  /// otherwise such points are left out.
+  /// Appends the points. If `keep_missing` is true, the coordinates of a point without a return are
+  /// NaN. Otherwise points without a return are omitted.
   void AppendAll(bool keep_missing, std::string* out) const {
     for (gsize i = 0; i < cloud_.info->Points(); ++i) {
       const bool missing = !HasReturn(At(i));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Clouds as PCD (Point Cloud Library) and PLY files.
+// Writes clouds as PCD files (Point Cloud Library) and PLY files.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -12,14 +12,14 @@ namespace lidar::gst {
 struct CloudFileInput {
   const CloudInfo* info = nullptr;
   const std::uint8_t* points = nullptr;      // info->FrameSize() bytes
-  std::optional<GstClockTime> capture_time;  // [ns since the Unix epoch], kept as a comment
+  std::optional<GstClockTime> capture_time;  // [ns since the Unix epoch]; written as a comment
   bool binary = true;
 };
 
-/// PCD 0.7. A point without a return is NaN in an organised cloud, as in PCL, and left out of an
-/// unorganised cloud.
+/// Writes PCD 0.7. In an organised cloud a point without a return is NaN, as in PCL. In an
+/// unorganised cloud it is omitted.
 std::string WritePcd(const CloudFileInput& cloud);
-/// PLY 1.0, without the points that have no return.
+/// Writes PLY 1.0 and omits points without a return.
 std::string WritePly(const CloudFileInput& cloud);
 
 }  // namespace lidar::gst

@@ -46,7 +46,7 @@ const std::array<Property<Settings>, 1> kProperties = {{
 struct State {
   std::mutex mutex;  // guards the settings
   Settings settings;
-  // Only the streaming thread uses these.
+  // The members below are used by the streaming thread only.
   std::optional<CloudInfo> info;
   RefusedCaps refused;
   bool slices_reported = false;
@@ -54,7 +54,7 @@ struct State {
 
 }  // namespace
 
-/// The element; its subclasses differ in the format that they write.
+/// The base class of the elements. Its subclasses differ in the file format that they write.
 struct GstLidarCloudFileEnc {
   GstBaseTransform parent;
   State* state;
@@ -101,7 +101,7 @@ static gboolean SetCaps(GstBaseTransform* base, GstCaps* in, GstCaps*) {
   return FALSE;
 }
 
-/// Warns that each slice becomes a file, which is rarely wanted.
+/// Warns if slices arrive, because then each slice becomes a file, which is rarely wanted.
 static void ReportSlices(GstBaseTransform* base, GstBuffer* in) {
   State& state = StateOf(base);
   GstLidarSlice slice{};
@@ -129,7 +129,8 @@ static std::string Write(GstBaseTransform* base, GstBuffer* in) {
   return reinterpret_cast<GstLidarCloudFileEncClass*>(G_OBJECT_GET_CLASS(base))->write(cloud);
 }
 
-/// Makes the whole output, because the size of a file is known only when it is written.
+/// Creates the output buffer with its content, because the size of the file is not known before it
+/// is written.
 static GstFlowReturn PrepareOutput(GstBaseTransform* base, GstBuffer* in, GstBuffer** out) {
   auto text = std::make_unique<std::string>(Write(base, in));
   if (text->empty()) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Places clouds into a frame by the transforms of an inbox, and counts clouds without a transform.
+// Finds the transforms that move clouds to a target frame, and counts clouds without a transform.
 #pragma once
 #include <gst/gst.h>
 
@@ -14,17 +14,19 @@ namespace lidar::gst {
 
 class FramePlacer {
  public:
-  /// For any thread.
+  /// Any thread may call these two methods.
   TransformInbox& inbox() { return inbox_; }
   guint64 clouds_without() const { return without_; }
 
-  // For the streaming thread.
+  // Only the streaming thread may call the methods below.
 
-  /// Sets the frame of output clouds; empty: clouds keep their frame.
+  /// Sets the frame to which clouds are moved. If `target` is empty, clouds keep their frame. A
+  /// cloud waits for its transform at most for `patience`.
   void SetTarget(std::string target, std::chrono::nanoseconds patience);
-  /// Finds the transform of a cloud of `frame` to the target. If there is none, it sets `transform`
-  /// to nothing, counts the cloud, and warns for `element` if the previous cloud had a transform.
-  /// Returns FLUSHING if a flush or the end of the stream ended the wait.
+  /// Finds the transform that moves a cloud from `frame` to the target frame. If there is none,
+  /// sets `transform` to nothing, counts the cloud, and posts a warning unless the cloud before it
+  /// had none either. Returns FLUSHING if the wait was interrupted, because of a flush or because
+  /// the element stops.
   GstFlowReturn Place(GstElement* element, GstBuffer* cloud, const std::string& frame,
                       std::optional<Transform>* transform);
   void Clear();

@@ -70,13 +70,13 @@ constexpr gint kLive = GST_PARAM_MUTABLE_PLAYING;
 struct State {
   std::mutex mutex;  // guards settings, changed and counters
   FilterSettings settings;
-  bool changed = false;  // true: the settings are newer than the plan
+  bool changed = false;  // true if the settings have changed since the plan was made
   Counters counters;
   FramePlacer placer;
-  // Only the streaming thread uses these.
-  CapsPtr caps;  // of the input
+  // The members below are used by the streaming thread only.
+  CapsPtr caps;  // caps of the input
   std::unique_ptr<FilterPlan> plan;
-  Counters before;  // of earlier plans
+  Counters before;  // counts of earlier plans
   CapsPtr pushed;
   HeldEvents held;
   RefusedCaps refused;
@@ -90,7 +90,7 @@ struct _GstLidarPointCloudFilter {
   GstElement parent;
   GstPad* sinkpad;
   GstPad* srcpad;
-  guint64 next_pad;  // number of the next pad for transforms
+  guint64 next_pad;  // number of the next pad tf_%u
   State* state;
 };
 
@@ -158,7 +158,7 @@ static void NoteChange(GObject* object, GParamSpec* spec) {
   if (name == "target-frame" || name == "tf-timeout") PostNewLatency(object);
 }
 
-/// Makes a plan for the present caps and settings. Returns false after an error.
+/// Makes a plan for the current caps and settings. If that fails, posts an error and returns false.
 static bool MakePlan(GstLidarPointCloudFilter* self) {
   State& state = *self->state;
   FilterSettings settings;
@@ -257,7 +257,7 @@ static gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   return gst_pad_event_default(pad, parent, event);
 }
 
-/// Adds the time that a cloud may wait for its transform.
+/// Answers a query. The latency includes the time for which a cloud may wait for its transform.
 static gboolean SrcQuery(GstPad* pad, GstObject* parent, GstQuery* query) {
   if (!gst_pad_query_default(pad, parent, query)) return FALSE;
   if (GST_QUERY_TYPE(query) != GST_QUERY_LATENCY || !ReadLatency(query).live) return TRUE;
@@ -270,7 +270,8 @@ static gboolean SrcQuery(GstPad* pad, GstObject* parent, GstQuery* query) {
   return TRUE;
 }
 
-/// Queries and events of the clouds do not go to the sources of transforms.
+/// Links only the pads sink and src with each other. So queries and events of the cloud stream are
+/// not forwarded to the elements that send transforms.
 static GstIterator* LinksOf(GstPad* pad, GstObject* parent) {
   auto* self = GST_LIDAR_POINT_CLOUD_FILTER(parent);
   return LinkTo(pad == self->srcpad ? self->sinkpad : self->srcpad);
@@ -280,7 +281,8 @@ static GstPad* RequestPad(GstElement* element, GstPadTemplate* pad_template, con
                           const GstCaps*) {
   auto* self = GST_LIDAR_POINT_CLOUD_FILTER(element);
   GST_OBJECT_LOCK(self);
-  // A pad keeps its requested name. Later pads without a name get higher numbers.
+  // A pad that is requested by name gets this name. Later pads that are requested without a name
+  // get higher numbers.
   guint64 number = self->next_pad;
   if (name != nullptr) g_ascii_string_to_unsigned(name + 3, 10, 0, G_MAXUINT, &number, nullptr);
   self->next_pad = std::max(self->next_pad, number + 1);

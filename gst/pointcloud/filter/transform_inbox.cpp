@@ -65,7 +65,8 @@ GstFlowReturn TransformInbox::Chain(GstPad* pad, GstObject*, GstBuffer* raw) {
   return GST_FLOW_OK;
 }
 
-/// Events of transforms do not go downstream with the clouds.
+/// Handles events of a transform pad. They are not forwarded, because downstream has only the
+/// stream of clouds.
 gboolean TransformInbox::Event(GstPad* pad, GstObject*, GstEvent* event) {
   const EventPtr owner(event);
   if (GST_EVENT_TYPE(event) == GST_EVENT_EOS) InboxOf(pad).SetEnded(pad, true);
@@ -75,7 +76,7 @@ gboolean TransformInbox::Event(GstPad* pad, GstObject*, GstEvent* event) {
   return TRUE;
 }
 
-/// Takes a tf2_msgs/msg/TFMessage from ros2src.
+/// Reads a tf2_msgs/msg/TFMessage from ros2src.
 void TransformInbox::TakeMessage(const GstStructure* caps, GstBuffer* buffer) {
   const BufferMap map(buffer, GST_MAP_READ);
   const auto transforms = map ? cdr::ReadTransforms(map.view()) : std::nullopt;
@@ -87,7 +88,7 @@ void TransformInbox::TakeMessage(const GstStructure* caps, GstBuffer* buffer) {
          for_good != FALSE);
 }
 
-/// Takes a pose from lidarodometry or ros2src.
+/// Reads a pose from lidarodometry or ros2src.
 void TransformInbox::TakePose(const GstStructure* caps, GstBuffer* buffer) {
   const BufferMap map(buffer, GST_MAP_READ);
   const auto at = CaptureTimeOf(buffer);

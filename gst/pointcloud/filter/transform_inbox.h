@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// An element's pads for transforms, and the transforms that arrived.
+// Receives transforms on pads of an element and stores them.
 #pragma once
 #include <gst/gst.h>
 
@@ -14,22 +14,23 @@
 
 namespace lidar::gst {
 
-/// Returns nothing if the buffer has no capture time. Differences of these times do not overflow.
+/// Returns the buffer's capture time, or nothing if it has none. The time is limited so that the
+/// difference of two times does not overflow.
 std::optional<Time> CaptureTimeOf(GstBuffer* buffer);
 
-/// All threads may call it.
+/// The transforms that have arrived on the pads of an element. Any thread may call the methods.
 class TransformInbox {
  public:
-  /// Adds a sink pad of `pad_template` that takes TFMessages and odometry. The inbox must outlive
-  /// the pad.
+  /// Adds a sink pad that accepts TFMessages and odometry. The inbox must outlive the pad.
   GstPad* AddPad(GstElement* element, GstPadTemplate* pad_template, const gchar* name);
   void ReleasePad(GstElement* element, GstPad* pad);
 
-  /// Finds the transform of points from `source` to `target`. Waits for a missing transform. After
-  /// a wait without success, it waits again only when a newer transform has come.
+  /// Finds the transform that moves points from `source` to `target`. If it is missing, waits for
+  /// it. After a wait without success, further calls wait only if a newer transform has arrived
+  /// since then.
   TransformTree::Answer Find(const std::string& target, const std::string& source,
                              std::optional<Time> at, std::chrono::nanoseconds timeout);
-  /// Ends waits of Find(), until Interrupt(false).
+  /// Makes Find() return without waiting until Interrupt(false) is called.
   void Interrupt(bool on);
   bool is_interrupted() const;
   void Clear();
@@ -51,13 +52,14 @@ class TransformInbox {
   void SetEnded(GstPad* pad, bool ended);
   bool MayCome(const TransformTree::Answer& answer) const;
 
-  mutable std::mutex mutex_;  // guards all that follows
+  mutable std::mutex mutex_;  // guards all members below
   std::condition_variable changed_;
   TransformTree tree_;
   Counters counters_;
-  std::map<GstPad*, bool> pads_;  // true: ended
+  std::map<GstPad*, bool> pads_;  // true if the pad has received EOS
   bool interrupted_ = false;
-  std::optional<Time> waited_in_vain_;  // time of the newest transform at the last vain wait
+  // The time of the newest transform when Find() last waited without success.
+  std::optional<Time> waited_in_vain_;
 };
 
 }  // namespace lidar::gst

@@ -50,19 +50,20 @@ const std::array<Property<MergePadSettings>, 1> kPadProperties = {{
      &MergePadSettings::transform, 0, 0, GST_PARAM_MUTABLE_PLAYING},
 }};
 
-/// The pose of a sensor, and the plan that converts its clouds to the common form.
+/// The settings of a sink pad, and the plan that converts its clouds to the common frame and
+/// fields.
 struct MergePadState {
   std::mutex mutex;  // guards the settings
   MergePadSettings settings;
-  // Only the thread that aggregates uses these.
+  // The members below are used by the aggregating thread only.
   CapsPtr caps;
   std::unique_ptr<FilterPlan> plan;
   std::string plan_transform;
   std::string plan_fields;
-  std::string own_fields;  // of the clouds; empty: not known
+  std::string own_fields;  // fields of the pad's clouds; empty if not known
 };
 
-/// Greatest time between two scans of one turn, if the scans have no duration.
+/// The assumed duration of a scan that has none. Scans whose times differ by more are not merged.
 constexpr GstClockTime kUsualScan = 100 * GST_MSECOND;
 
 struct Head {
@@ -71,10 +72,10 @@ struct Head {
   GstClockTime duration = 0;
 };
 
-/// The next output.
+/// The merged cloud that is pushed next.
 struct Merged {
   std::vector<std::uint8_t> points;
-  std::string fields;  // of the first pad
+  std::string fields;  // the fields of the first pad's clouds
   GstClockTime time = GST_CLOCK_TIME_NONE;
   GstClockTime duration = 0;
   GstClockTime capture_time = GST_CLOCK_TIME_NONE;
@@ -94,7 +95,7 @@ struct _GstLidarPointCloudMergePad {
 
 G_DEFINE_TYPE(GstLidarPointCloudMergePad, gst_lidar_point_cloud_merge_pad, GST_TYPE_AGGREGATOR_PAD)
 
-// The functions of a pad are for the thread that aggregates.
+// The functions of a pad must be called by the aggregating thread.
 
 static void MergePadSetCaps(GstLidarPointCloudMergePad* pad, GstCaps* caps) {
   pad->state->caps.reset(gst_caps_ref(caps));
@@ -110,8 +111,8 @@ static void MergePadForget(GstLidarPointCloudMergePad* pad) {
   pad->state->own_fields.clear();
 }
 
-/// Converts the returns of `buffer` to the common frame, with `fields`. Returns null on failure;
-/// `why` then has the reason for a user.
+/// Converts the returns in `buffer` to the common frame and to the given fields. If that fails,
+/// returns null and sets `why` to a reason for the user.
 static BufferPtr MergePadRead(GstLidarPointCloudMergePad* pad, GstBuffer* buffer,
                               const std::string& fields, std::string* why) {
   MergePadState& state = *pad->state;
@@ -157,7 +158,7 @@ G_DEFINE_TYPE_WITH_CODE(GstLidarPointCloudMerge, gst_lidar_point_cloud_merge, GS
 GST_ELEMENT_REGISTER_DEFINE(pointcloudmerge, "pointcloudmerge", GST_RANK_NONE,
                             gst_lidar_point_cloud_merge_get_type())
 
-/// The pads in their order; each is referenced.
+/// Returns the sink pads in the order of the element's list, with a reference to each.
 static std::vector<PadPtr> Pads(GstAggregator* base) {
   std::vector<PadPtr> pads;
   GST_OBJECT_LOCK(base);
@@ -167,7 +168,7 @@ static std::vector<PadPtr> Pads(GstAggregator* base) {
   return pads;
 }
 
-/// Returns the fields of the first pad whose fields are known, though it may have no scan now.
+/// Returns the fields of the first pad whose fields are known, even if this pad has no scan now.
 static std::string FieldsOfFirst(const std::vector<PadPtr>& pads) {
   for (const auto& owner : pads) {
     const auto& fields = GST_LIDAR_POINT_CLOUD_MERGE_PAD(owner.get())->state->own_fields;
@@ -176,7 +177,7 @@ static std::string FieldsOfFirst(const std::vector<PadPtr>& pads) {
   return "";
 }
 
-/// Returns 0 for a buffer without a time.
+/// Returns the running time of the buffer, or 0 if the buffer has no time.
 static GstClockTime RunningTime(GstAggregatorPad* pad, GstBuffer* buffer) {
   if (pad->segment.format != GST_FORMAT_TIME) return 0;
   const GstClockTime time =
@@ -184,14 +185,15 @@ static GstClockTime RunningTime(GstAggregatorPad* pad, GstBuffer* buffer) {
   return GST_CLOCK_TIME_IS_VALID(time) ? time : 0;
 }
 
-/// The first buffer on each pad.
+/// Returns the first queued buffer of each pad that has a buffer.
 static std::vector<Head> Heads(const std::vector<PadPtr>& pads) {
   std::vector<Head> heads;
   for (const auto& owner : pads) {
     auto* pad = GST_AGGREGATOR_PAD(owner.get());
     const BufferPtr buffer(gst_aggregator_pad_peek_buffer(pad));
     if (!buffer) continue;
-    // Even the newest scan would belong to an earlier turn if it had a duration of 0.
+    // A duration of 0 counts as unknown. Otherwise even the newest scan would be dropped as too
+    // old.
     const GstClockTime duration = GST_BUFFER_DURATION(buffer.get());
     const bool known = GST_CLOCK_TIME_IS_VALID(duration) && duration > 0;
     heads.push_back({GST_LIDAR_POINT_CLOUD_MERGE_PAD(pad), RunningTime(pad, buffer.get()),
@@ -200,7 +202,7 @@ static std::vector<Head> Heads(const std::vector<PadPtr>& pads) {
   return heads;
 }
 
-/// Drops scans of turns before the newest turn. Returns true if there were any.
+/// Drops scans that end before the newest scan begins. Returns true if there were any.
 static bool DropOld(GstLidarPointCloudMerge* self, const std::vector<Head>& heads) {
   GstClockTime newest = 0;
   for (const Head& head : heads) newest = std::max(newest, head.time);
@@ -213,7 +215,8 @@ static bool DropOld(GstLidarPointCloudMerge* self, const std::vector<Head>& head
   return dropped;
 }
 
-/// Warns of slices: slices that are merged one by one show unrelated parts of the turn.
+/// Warns if slices arrive. Slices are not synchronised, so merged slices would show unrelated parts
+/// of the turn.
 static void ReportSlices(GstLidarPointCloudMerge* self, GstBuffer* buffer) {
   GstLidarSlice slice{};
   if (self->state->slices_reported || !gst_lidar_buffer_get_slice(buffer, &slice) ||
@@ -227,7 +230,7 @@ static void ReportSlices(GstLidarPointCloudMerge* self, GstBuffer* buffer) {
 static bool AddCloud(GstLidarPointCloudMerge* self, const Head& head, Merged* merged) {
   const BufferPtr buffer(gst_aggregator_pad_pop_buffer(GST_AGGREGATOR_PAD(head.pad)));
   if (!buffer) return true;
-  // The base class makes an empty buffer of a GAP event.
+  // The base class converts a GAP event to an empty buffer.
   if (gst_buffer_get_size(buffer.get()) == 0 &&
       GST_BUFFER_FLAG_IS_SET(buffer.get(), GST_BUFFER_FLAG_GAP))
     return true;
@@ -250,7 +253,8 @@ static bool AddCloud(GstLidarPointCloudMerge* self, const Head& head, Merged* me
   return true;
 }
 
-/// Sets the times of a turn that has only gaps, for example from filters that leave no point.
+/// Sets the time of the output if all pads had gaps, for example because filters removed all
+/// points.
 static void TakeTimeOfGaps(const std::vector<Head>& heads, Merged* merged) {
   const auto first = std::min_element(heads.begin(), heads.end(),
                                       [](const Head& a, const Head& b) { return a.time < b.time; });
@@ -258,7 +262,7 @@ static void TakeTimeOfGaps(const std::vector<Head>& heads, Merged* merged) {
   merged->duration = first->duration;
 }
 
-/// Sends caps if the number of points or the fields differ from those of the last cloud.
+/// Sends new caps if the number of points or the fields have changed since the last cloud.
 static void SetCaps(GstLidarPointCloudMerge* self, const Merged& merged,
                     const lidar::PointFields& fields) {
   CloudInfo info;
@@ -272,8 +276,8 @@ static void SetCaps(GstLidarPointCloudMerge* self, const Merged& merged,
   self->state->pushed = std::move(caps);
 }
 
-/// Announces that no cloud comes, so that downstream does not wait for it. Before the first cloud
-/// and after a flush, the pad has no segment, so it can push no gap.
+/// Pushes a GAP event, so that downstream does not wait for a cloud. Before the first cloud and
+/// after a flush the pad has no segment, so nothing is pushed.
 static void PushGap(GstPad* pad, GstClockTime pts, GstClockTime duration) {
   const EventPtr segment(gst_pad_get_sticky_event(pad, GST_EVENT_SEGMENT, 0));
   if (segment && GST_CLOCK_TIME_IS_VALID(pts))
@@ -283,7 +287,7 @@ static void PushGap(GstPad* pad, GstClockTime pts, GstClockTime duration) {
 static GstFlowReturn Push(GstLidarPointCloudMerge* self, Merged merged) {
   auto* base = GST_AGGREGATOR(self);
   GstSegment& segment = GST_AGGREGATOR_PAD(base->srcpad)->segment;
-  // The segment after a seek begins at its target, where the running time is 0.
+  // The segment after a seek begins at the target of the seek, and its running time there is 0.
   const GstClockTime pts =
       gst_segment_position_from_running_time(&segment, GST_FORMAT_TIME, merged.time);
   if (GST_CLOCK_TIME_IS_VALID(pts)) segment.position = pts + merged.duration;
@@ -311,7 +315,7 @@ static GstFlowReturn Aggregate(GstAggregator* base, gboolean timeout) {
     });
     return ended ? GST_FLOW_EOS : GST_AGGREGATOR_FLOW_NEED_DATA;
   }
-  // Waits for a late sensor until the latency has passed.
+  // Waits for the scan of a late sensor until the latency has passed.
   while (DropOld(self, heads)) {
     if (!timeout) return GST_AGGREGATOR_FLOW_NEED_DATA;
     heads = Heads(pads);
@@ -334,7 +338,7 @@ static gboolean SinkEvent(GstAggregator* base, GstAggregatorPad* pad, GstEvent* 
       ->sink_event(base, pad, event);
 }
 
-/// Makes the pad a child of the element, so that gst-launch can set sink_1::transform.
+/// Adds the pad as a child of the element, so that gst-launch can set sink_1::transform.
 static GstPad* RequestPad(GstElement* element, GstPadTemplate* pad_template, const gchar* name,
                           const GstCaps* caps) {
   GstPad* pad = GST_ELEMENT_CLASS(gst_lidar_point_cloud_merge_parent_class)
@@ -379,7 +383,7 @@ static void gst_lidar_point_cloud_merge_class_init(GstLidarPointCloudMergeClass*
                               static_cast<GstPluginAPIFlags>(0));
   auto* aggregator = GST_AGGREGATOR_CLASS(klass);
   aggregator->aggregate = Aggregate;
-  // Caps come with the clouds; the base class would first send those of the template.
+  // Caps are sent with the clouds. The base class would send the caps of the template before.
   aggregator->negotiate = [](GstAggregator*) -> gboolean { return TRUE; };
   aggregator->sink_event = SinkEvent;
   aggregator->get_next_time = NextTime;

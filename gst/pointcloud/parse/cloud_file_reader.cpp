@@ -13,7 +13,7 @@ namespace {
 struct FileKind {
   CloudFileType type;
   const char* name;
-  const char* media_type;  // NULL: no typefind, because such files have no header
+  const char* media_type;  // NULL: not registered with typefind, because the files have no header
   const char* extension;
 };
 constexpr FileKind kFileKinds[] = {{CloudFileType::kPcd, "PCD", "application/x-pcd", "pcd"},
@@ -21,7 +21,7 @@ constexpr FileKind kFileKinds[] = {{CloudFileType::kPcd, "PCD", "application/x-p
                                    {CloudFileType::kLas, "LAS", "application/vnd.las", "las"},
                                    {CloudFileType::kKitti, "KITTI", nullptr, nullptr}};
 
-/// Returns the layout as ROS messages have it, for their converter.
+/// Returns the layout of the file's points in the form of ROS messages, which the converter needs.
 cdr::RosLayout LayoutOf(const FileCloud& file) {
   cdr::RosLayout layout;
   layout.width = file.width;
@@ -39,7 +39,7 @@ void Find(GstTypeFind* find, gpointer user_data) {
   const auto& wanted = *static_cast<const FileKind*>(user_data);
   guint64 length = gst_type_find_get_length(find);
   if (length == 0) length = 512;
-  // Tries smaller sizes for a short file.
+  // A short file has fewer bytes than the first size, so smaller sizes are tried, too.
   for (guint size : {512U, 64U, 8U}) {
     if (size > length) continue;
     const guint8* data = gst_type_find_peek(find, 0, size);
@@ -83,7 +83,7 @@ std::optional<FileBuffer> ReadCloudFile(CloudFileType type, ByteView file, std::
   if (converter->size() > 0) {
     BufferMap map(read.buffer.get(), GST_MAP_WRITE);
     if (!map) return std::nullopt;
-    std::fill(map.data(), map.data() + map.size(), guint8{0});  // gaps between fields
+    std::fill(map.data(), map.data() + map.size(), guint8{0});  // fills gaps between fields
     *why = "its points do not fit its header";
     if (!converter->Convert(message, map.data())) return std::nullopt;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Reads files of points as our clouds.
+// Reads files of points as clouds of this plugin set.
 #pragma once
 #include <gst/gst.h>
 
@@ -12,19 +12,19 @@
 
 namespace lidar::gst {
 
-/// The file type of caps; nothing for caps of raw clouds.
+/// Returns the file type that the caps name, or nothing for caps of raw clouds.
 std::optional<CloudFileType> CloudFileTypeOf(const GstCaps* caps);
 const char* NameOf(CloudFileType type);
 
 struct FileBuffer {
-  CloudInfo info;  // of the cloud; width 0: it is empty
+  CloudInfo info;  // describes the cloud; its width is 0 if the cloud is empty
   BufferPtr buffer;
 };
-/// Returns nothing if `file` cannot be read; `why` then has the reason in words for a user. The
-/// cloud has x, y and z as adjacent F32, and little-endian numbers.
+/// Reads a file. The cloud has little-endian numbers, and x, y and z as F32 side by side. If the
+/// file cannot be read, returns nothing and sets `why` to a reason for the user.
 std::optional<FileBuffer> ReadCloudFile(CloudFileType type, ByteView file, std::string* why);
 
-/// Registers the types that have a header with typefind.
+/// Registers typefind functions for all file types that have a header.
 gboolean RegisterCloudFileTypes(GstPlugin* plugin);
 
 }  // namespace lidar::gst

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Times of clouds from files: upstream's, or computed from the clouds' numbers.
+// Sets the times of clouds from files. Times come from upstream, or are computed from cloud
+// numbers.
 #pragma once
 #include <gst/gst.h>
 
@@ -12,9 +13,9 @@
 
 namespace lidar::gst {
 
-/// Clouds per second in caps or property.
+/// The number of clouds per second, as in caps or in the property framerate.
 struct FrameRate {
-  gint n = 0;  // 0: not known
+  gint n = 0;  // 0 if not known
   gint d = 1;
 };
 template <>
@@ -30,34 +31,36 @@ struct Kind<FrameRate> {
   static void Get(FrameRate value, GValue* v) { gst_value_set_fraction(v, value.n, value.d); }
 };
 
-/// For the streaming thread, except for the timeline.
+/// Sets times, capture times and numbers of clouds. Only the streaming thread may use it, except
+/// for the timeline.
 class CloudStamper {
  public:
   CloudTimeline& timeline() { return timeline_; }
   const FrameRate& rate() const { return rate_; }
-  /// Sets a known rate.
   void SetRate(const FrameRate& rate);
-  /// Number of clouds pushed or left out.
+  /// Returns the number of clouds that were pushed or left out so far.
   guint64 count() const { return place_.next; }
   /// Returns true if upstream's buffers have timestamps.
   bool times_given() const { return times_given_; }
 
-  /// Keeps upstream's segment if its format is time, and makes one otherwise. Takes the event.
+  /// Keeps upstream's segment if its format is time. Otherwise makes a segment in time. Takes
+  /// ownership of the event.
   void TakeSegment(GstEvent* event);
-  /// Returns the segment to push before the next cloud; NULL if it was pushed already.
+  /// Returns the segment that must be pushed before the next cloud, or NULL if it has been pushed.
   EventPtr NextSegment() { return std::move(segment_); }
-  /// Sets the size of all clouds in bytes; 0: sizes differ. With a size, the parser converts
-  /// seeks and queries in time to bytes for upstream.
+  /// Sets the size of every cloud in bytes, or 0 if sizes differ. If the size is known, the parser
+  /// can convert seeks and queries from time to the bytes of upstream.
   void SetCloudSize(gsize bytes);
-  /// Returns the time that `clouds` take.
+  /// Returns the duration of `clouds` clouds.
   GstClockTime TimeOf(guint64 clouds) const { return Grid().TimeOf(clouds); }
-  /// Sets a missing capture time as if the sensor had begun when the first cloud came. Numbers a
-  /// cloud that is not a slice as a scan of its own.
+  /// Sets times and the number of a cloud. A missing capture time is set as if the sensor had
+  /// started when the first cloud arrived. A cloud that is not a slice gets a scan number of its
+  /// own.
   void Stamp(GstBuffer* cloud);
-  /// Leaves out a cloud. Its time stays empty.
+  /// Counts a cloud that is not pushed. No other cloud gets its time.
   void LeaveOut() { ++place_.next; }
-  /// Returns true if the next cloud was pushed before a seek that continues at the current
-  /// position.
+  /// Returns true if the next cloud has already been pushed, before a seek that continues at the
+  /// current position.
   bool HasGone() const { return place_.next < place_.shown; }
   void Flush(bool restarts_time);
   void Reset();
@@ -73,7 +76,7 @@ class CloudStamper {
   bool times_given_ = false;
   EventPtr segment_;
   gsize cloud_size_ = 0;
-  std::optional<GstClockTimeDiff> unix_offset_;  // from timestamps to capture times
+  std::optional<GstClockTimeDiff> unix_offset_;  // difference between capture times and timestamps
   CloudTimeline::Place place_;
 };
 

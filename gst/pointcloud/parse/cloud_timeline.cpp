@@ -7,8 +7,8 @@
 
 namespace lidar::gst {
 
-/// TimeOf() rounds down, so a plain division would give the cloud before the one that begins at
-/// `time`.
+/// Returns the cloud at `time`. TimeOf() rounds down, so if a cloud begins at `time`, a plain
+/// division may return the cloud before it.
 guint64 CloudTimeline::Grid::CloudAt(GstClockTime time) const {
   const guint64 cloud = gst_util_uint64_scale(time, rate_n, rate_d * GST_SECOND);
   return TimeOf(cloud + 1) <= time ? cloud + 1 : cloud;
@@ -26,12 +26,12 @@ void CloudTimeline::Reset() {
   gst_segment_init(&segment_, GST_FORMAT_TIME);
 }
 
-/// Returns the running time at the end of the last cloud. The caller holds the lock.
+/// Returns the running time at the end of the last cloud. The caller must hold the mutex.
 GstClockTime CloudTimeline::Gone() const {
   return gst_segment_to_running_time(&segment_, GST_FORMAT_TIME, segment_.position);
 }
 
-/// The caller holds the lock.
+/// Starts a new segment at the beginning of `cloud`. The caller must hold the mutex.
 void CloudTimeline::BeginAt(guint64 cloud) {
   gst_segment_init(&segment_, GST_FORMAT_TIME);
   segment_.start = segment_.time = segment_.position = grid_.TimeOf(cloud);
@@ -52,7 +52,7 @@ EventPtr CloudTimeline::ToTime(GstEvent* event, Place* place) {
   const std::lock_guard lock(mutex_);
   const bool counts = bytes->format == GST_FORMAT_BYTES && grid_.cloud_bytes > 0;
   if (counts) place->next = bytes->start / grid_.cloud_bytes;
-  // Clouds may have been pushed since the request of a seek.
+  // More clouds may have been pushed since the seek was requested.
   const GstClockTime end = segment_.position;
   const GstClockTime gone = Gone();
   if (sought_ && sought_->seqnum == seqnum) {
@@ -73,7 +73,8 @@ EventPtr CloudTimeline::ToTime(GstEvent* event, Place* place) {
 
 void CloudTimeline::NotePosition(GstClockTime end) {
   const std::lock_guard lock(mutex_);
-  segment_.position = std::min(end, segment_.stop);  // without a stop, `stop` is the largest number
+  // If the segment has no stop position, `stop` is the largest number.
+  segment_.position = std::min(end, segment_.stop);
 }
 
 void CloudTimeline::RestartTime() {
@@ -162,7 +163,7 @@ std::optional<bool> CloudTimeline::Seek(GstPad* sinkpad, GstEvent* event) {
   const guint64 past_last = ends ? grid.CloudAt(segment.stop - 1) + 1 : 0;
   if (std::max(first, past_last) > static_cast<guint64>(G_MAXINT64) / grid.cloud_bytes)
     return false;
-  // A stop of -1 removes an earlier stop.
+  // A stop position of -1 means none. It replaces an earlier stop position.
   EventPtr bytes(
       gst_event_new_seek(rate, GST_FORMAT_BYTES, flags, GST_SEEK_TYPE_SET,
                          static_cast<gint64>(first * grid.cloud_bytes), GST_SEEK_TYPE_SET,

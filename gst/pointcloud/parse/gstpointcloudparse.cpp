@@ -35,11 +35,11 @@ namespace {
 
 using namespace lidar::gst;
 
-constexpr gint kDefaultRate = 10;            // scans/s if neither caps nor property have a rate
+constexpr gint kDefaultRate = 10;            // scans/s, if neither caps nor property have a rate
 constexpr gsize kMaxCloud = gsize{1} << 30;  // bytes
 
 struct Settings {
-  FrameRate framerate;  // 0: from the caps
+  FrameRate framerate;  // 0: use the rate in the caps
 };
 
 const std::array<Property<Settings>, 1> kProperties = {{
@@ -52,14 +52,15 @@ using AdapterPtr = std::unique_ptr<GstAdapter, Unref>;
 struct State {
   std::mutex mutex;  // guards the settings
   Settings settings;
-  CloudStamper stamper;  // its timeline has a lock of its own
-  // Only the streaming thread uses these, and the stamper except for its timeline.
-  std::optional<CloudInfo> info;             // of the file; width 0: not known
-  std::optional<lidar::CloudFileType> type;  // empty: raw points
+  CloudStamper stamper;  // its timeline has its own lock
+  // The members below, and the stamper without its timeline, are used by the streaming thread only.
+  std::optional<CloudInfo> info;             // read from the caps or the file; width 0: not known
+  std::optional<lidar::CloudFileType> type;  // empty for raw points
   CapsPtr caps;
   guint out_width = 0;
-  std::optional<gsize> file_size;  // of a file that comes in pieces; 0: each piece is a cloud
-  bool discont = false;            // something is missing before the next cloud
+  // The size of a file that arrives in pieces. 0: each buffer is a whole cloud.
+  std::optional<gsize> file_size;
+  bool discont = false;  // clouds are missing before the next cloud
   bool empty_reported = false;
   RefusedCaps refused;
   AdapterPtr adapter{gst_adapter_new()};
@@ -82,13 +83,13 @@ GST_ELEMENT_REGISTER_DEFINE(pointcloudparse, "pointcloudparse", GST_RANK_NONE,
 
 static State& StateOf(gpointer self) { return *GST_LIDAR_POINT_CLOUD_PARSE(self)->state; }
 
-/// Returns the bytes of a cloud in a stream whose buffers end anywhere; 0 if each buffer is a
-/// cloud.
+/// Returns the size of a cloud in bytes, for a stream whose buffers do not end where clouds end.
+/// Returns 0 if each buffer is a whole cloud.
 static gsize CloudSize(GstLidarPointCloudParse* self) {
   State& state = *self->state;
   if (!state.type && state.info->width > 0) return state.info->FrameSize();
   if (!state.file_size) {
-    // filesrc has the size of its file and reads it in blocks; multifilesrc gives whole files.
+    // filesrc knows the size of its file and sends it in blocks. multifilesrc sends whole files.
     gint64 size = 0;
     const bool known = gst_pad_peer_query_duration(self->sinkpad, GST_FORMAT_BYTES, &size);
     state.file_size = known && size > 0 ? static_cast<gsize>(size) : 0;
@@ -114,7 +115,7 @@ static void PushSegment(GstLidarPointCloudParse* self) {
     gst_pad_push_event(self->srcpad, segment.release());
 }
 
-/// A recording that broke off leaves empty files, which are skipped.
+/// Skips an empty file. A recording that was interrupted may end with empty files.
 static GstFlowReturn SkipEmpty(GstLidarPointCloudParse* self) {
   State& state = *self->state;
   state.stamper.LeaveOut();
@@ -145,13 +146,13 @@ static GstFlowReturn PushCloud(GstLidarPointCloudParse* self, BufferPtr buffer) 
   PushSegment(self);
   GstBuffer* out = gst_buffer_make_writable(buffer.release());
   state.stamper.Stamp(out);
-  // The adapter gave the flag of one buffer to all its clouds.
+  // The adapter copies the flag of a buffer to every cloud in this buffer.
   gst_buffer_unset_flags(out, GST_BUFFER_FLAG_DISCONT);
   if (std::exchange(state.discont, false)) gst_buffer_set_flags(out, GST_BUFFER_FLAG_DISCONT);
   return gst_pad_push(self->srcpad, out);
 }
 
-/// Pushes a whole file with a header.
+/// Pushes the cloud of a whole file that has a header.
 static GstFlowReturn PushFile(GstLidarPointCloudParse* self, const BufferPtr& file) {
   State& state = *self->state;
   std::string why = "its buffer cannot be mapped";
@@ -187,7 +188,7 @@ static GstFlowReturn PushWhole(GstLidarPointCloudParse* self, BufferPtr buffer) 
   return self->state->type ? PushFile(self, buffer) : PushCloud(self, std::move(buffer));
 }
 
-/// Takes the rate from the property, or else from the caps.
+/// Sets the rate from the property, or from the caps if the property is not set.
 static void SetRate(State* state, gint n, gint d) {
   FrameRate rate{n, d};
   {
@@ -197,15 +198,15 @@ static void SetRate(State* state, gint n, gint d) {
   state->stamper.SetRate(rate.n > 0 ? rate : FrameRate{kDefaultRate, 1});
 }
 
-/// Detects the type from the file's content.
+/// Detects the file type from the content of the file.
 static void GuessType(State* state, GstBuffer* buffer) {
   const BufferMap map(buffer, GST_MAP_READ);
   if (map) state->type = lidar::TypeOfCloudFile(map.view());
   if (state->type) SetRate(state, 0, 1);
 }
 
-/// Takes a cloud from the adapter, with the time of the buffer in which it begins. Further clouds
-/// of that buffer follow at the frame rate.
+/// Removes a cloud from the adapter. The cloud gets the time of the buffer in which it begins.
+/// Further clouds in the same buffer follow at the frame rate.
 static BufferPtr TakeCloud(State* state, gsize size) {
   guint64 distance = 0;
   const GstClockTime pts = gst_adapter_prev_pts(state->adapter.get(), &distance);
@@ -279,7 +280,7 @@ static gboolean HandleCaps(GstLidarPointCloudParse* self, GstEvent* event) {
   return TRUE;
 }
 
-/// Drops what is left in the adapter, which is not a whole cloud.
+/// Drops the bytes that remain in the adapter, because they are not a whole cloud.
 static void Drain(GstLidarPointCloudParse* self) {
   State& state = *self->state;
   const gsize left = gst_adapter_available(state.adapter.get());
@@ -297,7 +298,8 @@ static gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   State& state = *self->state;
   switch (GST_EVENT_TYPE(event)) {
     case GST_EVENT_STREAM_START:
-      // The next file of a concat has its own size and, if no caps name it, its own type.
+      // The next file from a concat element has its own size. It also has its own type, unless caps
+      // set the type.
       state.file_size.reset();
       if (gst_pad_has_current_caps(pad)) break;
       state.type.reset();
@@ -314,7 +316,7 @@ static gboolean SinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
         PushSegment(self);
         break;
       }
-      gst_event_unref(event);  // there are no caps for it
+      gst_event_unref(event);  // dropped, because no caps have been sent
       return TRUE;
     case GST_EVENT_EOS:
       Drain(self);
