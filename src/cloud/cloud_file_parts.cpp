@@ -14,7 +14,7 @@ constexpr std::uint64_t kSecond = 1'000'000'000;
 
 bool IsSpace(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
 
-/// Removes the next word from `text` and returns it; empty if there is none.
+/// Removes the next word from `text` and returns it. Returns an empty word if there is none.
 std::string_view TakeWord(std::string_view* text) {
   while (!text->empty() && IsSpace(text->front())) text->remove_prefix(1);
   std::size_t n = 0;
@@ -24,7 +24,7 @@ std::string_view TakeWord(std::string_view* text) {
   return word;
 }
 
-/// Returns the beginning of a word for a message. A message must be valid UTF-8.
+/// Returns the beginning of `word` for use in a message, which must be valid UTF-8.
 std::string Quoted(std::string_view word) {
   std::string text(word.substr(0, 20));
   std::replace_if(
@@ -110,7 +110,7 @@ bool ReadText(ByteView text, const std::vector<FileField>& fields, FileCloud* cl
   for (const FileField& f : fields) numbers += f.count;
   const std::uint64_t points = std::uint64_t{cloud->width} * cloud->height;
   *why = "the file ends before its last point";
-  // A number takes at least two bytes, with its space.
+  // A number needs at least two bytes: a digit and a space.
   if (points * numbers > text.size / 2 + 1) return false;
   cloud->points.resize(*size);
   std::string_view left = View(text);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The common part of readers of PCD and PLY: lines, fields, numbers as text.
+// The common parts of the PCD and PLY readers: header lines, fields, and numbers in text form.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -14,15 +14,15 @@ namespace lidar::cloud_file {
 constexpr std::size_t kMaxHeader = 65'536;               // bytes
 constexpr std::size_t kMaxCloud = std::size_t{1} << 30;  // bytes
 
-/// Reads a header line by line.
+/// Reads the header of a file line by line.
 class Lines {
  public:
   explicit Lines(ByteView file) : file_(file) {}
-  /// The words of the next line; nothing at the end of the header.
+  /// Returns the words of the next line, or nothing at the end of the header.
   std::optional<std::vector<std::string_view>> Next();
-  /// The bytes after the last line that was read.
+  /// Returns the bytes after the line that was read last.
   ByteView Rest() const { return file_.Sub(position_); }
-  /// Text of the last line that was read.
+  /// Returns the text of the line that was read last.
   std::string_view text() const { return text_; }
 
  private:
@@ -32,24 +32,24 @@ class Lines {
 };
 
 std::optional<std::uint64_t> ParseCount(std::string_view text);
-/// The time [ns since 1970] in a comment of our own writers.
+/// Returns the capture time [ns since 1970] from a comment that our own file encoders write.
 std::optional<std::uint64_t> ParseCaptureTime(std::string_view comment);
 
-/// A field of a point, in the file's order.
+/// A field of a point. Fields are in the order of the file.
 struct FileField {
-  std::string name;  // empty: padding
+  std::string name;  // empty for padding
   std::optional<FieldType> type;
-  std::uint32_t size = 0;   // bytes of one number
-  std::uint32_t count = 1;  // numbers
+  std::uint32_t size = 0;   // size of a number [bytes]
+  std::uint32_t count = 1;  // count of numbers in the field
 };
 
-/// Sets fields and point_step of `cloud`. Returns false if there are too many fields, or none.
+/// Sets `fields` and `point_step` of the cloud. Returns false if there are no fields, or too many.
 bool Lay(const std::vector<FileField>& fields, FileCloud* cloud, std::string* why);
-/// Bytes of all points; nothing if that is beyond kMaxCloud.
+/// Returns the size of all points in bytes, or nothing if it exceeds kMaxCloud.
 std::optional<std::size_t> SizeOfPoints(const FileCloud& cloud, std::string* why);
 
-/// Reads the numbers of all points from text into little-endian points. Returns false if some are
-/// missing or malformed.
+/// Reads the numbers of all points from text, and stores them as little-endian points. Returns
+/// false if a number is missing or malformed.
 bool ReadText(ByteView text, const std::vector<FileField>& fields, FileCloud* cloud,
               std::string* why);
 

@@ -12,7 +12,8 @@ namespace {
 
 constexpr std::size_t kKittiPoint = 16;  // bytes
 
-/// Text, integers and other structs have huge, tiny or invalid values if they are read as F32.
+/// Returns true if the four numbers at `p` may be a point of a KITTI file. Text, integers and other
+/// structs that are read as F32 have huge, tiny or invalid values.
 bool IsPlausiblePoint(const float* p) {
   constexpr float kFarthest = 1000;  // [m]
   constexpr float kBrightest = 255;

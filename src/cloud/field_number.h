@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Reads and writes numbers of point fields of any type.
+// Reads and writes the numbers in point fields of any type.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 
 namespace lidar {
 
-/// Calls `call(T{})` with the C++ type of `type`.
+/// Calls `call` with a value of the C++ type that corresponds to `type`.
 template <class Call>
 decltype(auto) WithTypeOf(FieldType type, Call&& call) {
   switch (type) {
@@ -34,7 +34,7 @@ decltype(auto) WithTypeOf(FieldType type, Call&& call) {
   return call(float{});
 }
 
-/// Reads a number of either byte order; a double holds each of these types exactly.
+/// Reads a number in either byte order. Each of the types fits a double exactly.
 inline double ReadNumber(const std::uint8_t* from, FieldType type, bool big_endian = false) {
   return WithTypeOf(type, [&](auto value) {
     std::uint8_t bytes[sizeof value];
@@ -45,7 +45,8 @@ inline double ReadNumber(const std::uint8_t* from, FieldType type, bool big_endi
   });
 }
 
-/// Writes the nearest number that the type can hold; NaN becomes 0 in an integer.
+/// Writes the number of this type that is nearest to `value`. For integer types, NaN is written as
+/// 0.
 inline void WriteNumber(double value, FieldType type, std::uint8_t* to) {
   WithTypeOf(type, [&](auto stored) {
     using T = decltype(stored);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// LAS 1.0 to 1.4 (ASPRS): point records of formats 0 to 10.
+// Reads LAS 1.0 to 1.4 (ASPRS), with point records of formats 0 to 10.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,29 +14,30 @@ namespace {
 
 using Vector = std::array<double, 3>;
 
-constexpr std::size_t kHeader10 = 227;  // bytes of versions 1.0 to 1.2
+constexpr std::size_t kHeader10 = 227;  // size of the header in versions 1.0 to 1.2 [bytes]
 constexpr std::size_t kHeader14 = 375;
-constexpr double kFineReach = 16'384;  // F32 distinguishes millimetres up to here [m]
+constexpr double kFineReach = 16'384;  // limit up to which F32 can represent millimetres [m]
 
-/// Offsets in a record; 0: the format has no such field.
+/// Offsets of fields in a record. The offset is 0 if the format does not have the field.
 struct PointFormat {
   std::uint32_t size;
   std::uint32_t time, colour, infrared;
 };
-// Table 7 and later tables of the specification. Formats from 6 on begin with more fields.
+// See table 7 and later tables of the specification. The formats from 6 on have a longer first
+// part.
 constexpr PointFormat kFormats[] = {{20, 0, 0, 0},   {28, 20, 0, 0},  {26, 0, 20, 0},
                                     {34, 20, 28, 0}, {57, 20, 0, 0},  {63, 20, 28, 0},
                                     {30, 22, 0, 0},  {36, 22, 30, 0}, {38, 22, 30, 36},
                                     {59, 22, 0, 0},  {67, 22, 30, 36}};
 constexpr unsigned kFirstLong = 6;
-// Short formats have flags in the upper bits of the class.
+// The short formats have flags in the upper bits of the class.
 constexpr std::uint32_t kShortClass = 15;
 constexpr std::uint8_t kShortClassBits = 0x1F;
 
 struct LasHeader {
   std::uint32_t points_at = 0;
   unsigned format = 0;
-  std::uint32_t step = 0;  // bytes of a record
+  std::uint32_t step = 0;  // size of a record [bytes]
   std::uint64_t points = 0;
   Vector scale{}, offset{};
 };
@@ -85,7 +86,7 @@ std::optional<LasHeader> ReadLasHeader(ByteView file, std::string* why) {
   h.format = r.U8();
   h.step = r.Le16();
   h.points = r.Le32();
-  r.Skip(20);  // points by return
+  r.Skip(20);  // number of points by return
   for (double& v : h.scale) v = r.LeF64();
   for (double& v : h.offset) v = r.LeF64();
   if (minor == 4) h.points = ByteReader(file.Sub(247, 8)).Le64();
@@ -106,7 +107,7 @@ Vector Position(const std::uint8_t* record, const LasHeader& h) {
   return p;
 }
 
-/// Returns the offset that is subtracted from all positions.
+/// Returns the position that is subtracted from all points.
 Vector OriginOf(ByteView records, const LasHeader& h) {
   Vector least;
   least.fill(std::numeric_limits<double>::infinity());

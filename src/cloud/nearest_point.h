@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Distances from points to the nearest point of a cloud.
+// Finds the distance from a point to the nearest point of a cloud.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -7,11 +7,13 @@
 
 namespace lidar {
 
-/// A k-d tree over the points of `xyz` (three floats each, finite), which must outlive it.
+/// A k-d tree of the points in `xyz`. Each point is three finite floats. `xyz` must outlive the
+/// tree.
 class NearestPoint {
  public:
   explicit NearestPoint(const std::vector<float>& xyz);
-  /// Distance from `point` to the nearest point of the cloud; infinity if the cloud is empty.
+  /// Returns the distance from `point` to the nearest point of the cloud, or infinity if the cloud
+  /// is empty.
   double DistanceFrom(const float* point) const;
 
  private:
@@ -21,7 +23,8 @@ class NearestPoint {
   const float* At(std::size_t i) const { return xyz_ + 3 * std::size_t{order_[i]}; }
 
   const float* xyz_;
-  std::vector<std::uint32_t> order_;  // indices; the point in the middle of a range divides it
+  // The indices of the points. The point in the middle of a range divides the range.
+  std::vector<std::uint32_t> order_;
 };
 
 }  // namespace lidar

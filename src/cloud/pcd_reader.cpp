@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// PCD up to 0.7: text, binary, and binary compressed by LZF.
+// Reads PCD files up to version 0.7: text, binary, and binary compressed with LZF.
 #include <lzf.h>
 
 #include <algorithm>
@@ -30,7 +30,7 @@ std::optional<FieldType> TypeOf(std::string_view type, std::uint64_t size) {
   return std::nullopt;
 }
 
-/// The lines of a header as text.
+/// The lines of the header in text form.
 struct PcdHeader {
   Words fields, sizes, types, counts;
   std::optional<std::uint64_t> width, height, points;
@@ -38,7 +38,7 @@ struct PcdHeader {
   std::optional<std::uint64_t> capture_time;
 };
 
-/// Returns nothing if there is no line DATA.
+/// Reads the lines up to DATA. Returns nothing if there is no line DATA.
 std::optional<PcdHeader> ReadPcdHeader(cloud_file::Lines* lines) {
   PcdHeader header;
   while (const auto words = lines->Next()) {
@@ -103,12 +103,13 @@ bool SetSize(const PcdHeader& h, FileCloud* cloud, std::string* why) {
   return true;
 }
 
-/// A back reference of three bytes gives 264 bytes, the best ratio of the format.
+/// The best compression ratio of the format: a back reference of three bytes gives 264 bytes.
 constexpr std::size_t kMostPerByte = 88;
 
-/// Decompresses to exactly `size` bytes; nothing if the data are damaged or give another size.
+/// Decompresses `data`. Returns nothing if the data are damaged or do not give exactly `size`
+/// bytes.
 std::optional<std::vector<std::uint8_t>> DecompressLzf(ByteView data, std::size_t size) {
-  // The library reads the first byte without a check that it exists.
+  // The library reads the first byte without checking that it exists.
   if (data.size == 0 || size / kMostPerByte > data.size) return std::nullopt;
   std::vector<std::uint8_t> out(size);
   if (lzf_decompress(data.data, static_cast<unsigned>(data.size), out.data(),
@@ -117,7 +118,8 @@ std::optional<std::vector<std::uint8_t>> DecompressLzf(ByteView data, std::size_
   return out;
 }
 
-/// Compressed files hold the first number of all points, then the second, and so on.
+/// Reads compressed points. The file has the first field of all points, then the second field of
+/// all points, and so on.
 bool ReadCompressed(ByteView rest, const std::vector<FileField>& fields, FileCloud* cloud,
                     std::string* why) {
   ByteReader r(rest);

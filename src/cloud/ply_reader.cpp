@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// PLY 1.0: text, and binary of either byte order. Only the vertices are read.
+// Reads PLY 1.0 files: text, and binary in either byte order. Only the vertices are read.
 #include <algorithm>
 #include <limits>
 
@@ -28,14 +28,14 @@ std::optional<FieldType> TypeOf(std::string_view name) {
 
 enum class Format { kNone, kText, kLittle, kBig };
 
-/// Parses a header line by line.
+/// The header of a file. It is parsed line by line.
 struct PlyHeader {
   Format format = Format::kNone;
   std::optional<std::uint64_t> vertices;
   std::vector<FileField> fields;
   std::optional<std::uint64_t> capture_time;
   bool in_vertices = false;
-  bool other_first = false;  // other elements precede the vertices
+  bool other_first = false;  // other elements are listed before the vertices
 
   bool Take(const std::vector<std::string_view>& words, std::string_view line, std::string* why) {
     const std::string_view key = words.front();

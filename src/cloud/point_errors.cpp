@@ -13,7 +13,7 @@ namespace {
 
 double Distance(const float* a, const float* b) { return std::sqrt(SquaredDistance(a, b)); }
 
-/// Collects distances.
+/// Collects distances and computes their statistics.
 class Distances {
  public:
   void Add(double metres) {
@@ -21,11 +21,13 @@ class Distances {
     sum_ += metres;
     errors_.max_m = std::max(errors_.max_m, metres);
   }
-  /// Adds the error of a decoded point without a raw point of its own.
+  /// Adds the distance from a decoded point to the nearest raw point. It counts only for the
+  /// maximum.
   void AddBack(double metres) { errors_.max_m = std::max(errors_.max_m, metres); }
   void AddMissing(std::uint64_t points) { errors_.missing += points; }
   void OnCoordinate(double metres) { largest_ = std::max(largest_, std::abs(metres)); }
-  /// Allows for rounding of both positions of a distance, each in three coordinates.
+  /// Returns the statistics. The rounding error allows for three rounded coordinates of both
+  /// points.
   PointErrors Take() {
     if (errors_.points > 0) errors_.mean_m = sum_ / static_cast<double>(errors_.points);
     errors_.rounding_m = 4 * static_cast<double>(std::numeric_limits<float>::epsilon()) * largest_;
@@ -78,7 +80,8 @@ std::vector<float> ReturnsOf(ByteView raw, const PointFields& fields, std::uint3
   return returns;
 }
 
-/// `may_merge`: a decoded point may be the result of several raw points.
+/// Compares raw points with decoded points. If `may_merge` is true, a decoded point may represent
+/// several raw points.
 PointErrors CompareClouds(const std::vector<float>& before, const std::vector<float>& after,
                           bool in_order, bool may_merge) {
   Distances distances;
@@ -94,7 +97,7 @@ PointErrors CompareClouds(const std::vector<float>& before, const std::vector<fl
   const NearestPoint original(before);
   for (std::size_t i = 0; i < after.size(); i += 3) {
     const double distance = original.DistanceFrom(&after[i]);
-    // If points were removed, only decoded points count.
+    // If points were removed, only the distances from decoded points to raw points are used.
     missing > 0 ? distances.Add(distance) : distances.AddBack(distance);
   }
   if (missing > 0) return distances.Take();

@@ -25,7 +25,8 @@ constexpr std::array<TypeName, 8> kTypes = {{{FieldType::kI8, "I8", 1},
 
 const TypeName& Describe(FieldType type) { return kTypes[static_cast<std::size_t>(type)]; }
 
-/// Cuts `text` at the first `separator` and returns what stood before it.
+/// Removes the part of `text` up to the first `separator`, and returns this part without the
+/// separator.
 std::string_view TakeUntil(char separator, std::string_view* text) {
   const std::size_t end = text->find(separator);
   const std::string_view head = text->substr(0, end);
@@ -33,7 +34,8 @@ std::string_view TakeUntil(char separator, std::string_view* text) {
   return head;
 }
 
-/// Names come from networks and go into caps and logs, so they must be printable ASCII.
+/// Returns true if `text` is a valid name. Names come from networks and are used in caps and logs,
+/// so they must be printable ASCII.
 bool IsName(std::string_view text) {
   return !text.empty() &&
          std::all_of(text.begin(), text.end(), [](char c) { return c >= ' ' && c <= '~'; });

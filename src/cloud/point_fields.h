@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The layout of one point: named, typed fields at byte offsets, after ROS 2 PointCloud2.
+// The layout of a point: named and typed fields at byte offsets, like in ROS 2 PointCloud2.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -17,31 +17,31 @@ std::size_t SizeOf(FieldType type);
 struct PointField {
   std::string name;
   FieldType type;
-  std::uint32_t offset;  // bytes from the start of the point
+  std::uint32_t offset;  // offset from the start of the point [bytes]
 };
 bool operator==(const PointField& a, const PointField& b);
 
 class PointFields {
  public:
   PointFields() = default;
-  /// Appends a field after the last one.
+  /// Appends a field behind the last field.
   PointFields& Add(std::string name, FieldType type);
 
-  /// Parses the caps field `fields`: "x:F32:0,y:F32:4,z:F32:8". Returns nothing for an unknown
-  /// type, an empty or repeated name, more than kMaxFields, or an offset past kMaxPointStep; `why`
-  /// then says which, for a user.
+  /// Parses the caps field `fields`, for example "x:F32:0,y:F32:4,z:F32:8". Returns nothing if a
+  /// type is unknown, if a name is empty or repeated, if there are more than kMaxFields fields, or
+  /// if an offset exceeds kMaxPointStep. Sets `why` to a reason for the user.
   static std::optional<PointFields> Parse(std::string_view text, std::string* why = nullptr);
   std::string ToString() const;
 
-  /// Null if there is no such field.
+  /// Returns the field, or null if there is no field of this name.
   const PointField* Find(std::string_view name) const;
   bool Has(std::string_view name, FieldType type) const;
-  /// Returns true if x, y and z are adjacent F32 in this order, as all elements need them.
+  /// Returns true if x, y and z are F32 and adjacent in this order, which all elements require.
   bool HasPackedXyz() const;
-  /// Returns true if the fields, in any order, fill the point from 0 without overlap or gaps, as
-  /// decoders produce it.
+  /// Returns true if the fields fill the point without gaps or overlaps, starting at offset 0. They
+  /// may be in any order. Points from decoders are packed.
   bool ArePacked() const;
-  /// Bytes up to the end of the last field.
+  /// Returns the offset of the end of the last field [bytes].
   std::uint32_t MinimumStep() const;
 
   const std::vector<PointField>& all() const { return fields_; }

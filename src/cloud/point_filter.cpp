@@ -106,7 +106,8 @@ std::optional<PointFilter> PointFilter::Make(const PointFilterSettings& settings
 bool PointFilter::IsFirstInVoxel(const std::array<float, 3>& xyz) {
   std::uint64_t key = 0;
   for (const float c : xyz) {
-    // There are 2^21 cubes along each axis; points beyond share the outermost ones.
+    // There are 2^21 cubes along each axis. Points outside of all cubes count as in the outermost
+    // cubes.
     const double index = std::floor(static_cast<double>(c) / settings_.voxel_size_m);
     const auto limited = static_cast<std::int64_t>(std::clamp(index, -1048576.0, 1048575.0));
     key = key << 21 | static_cast<std::uint64_t>(limited + 1048576);
@@ -114,7 +115,7 @@ bool PointFilter::IsFirstInVoxel(const std::array<float, 3>& xyz) {
   return voxels_.insert(key).second;
 }
 
-/// Moves the point by pose and transform. Returns false if the point is to be removed.
+/// Moves the point by the pose and the transform. Returns false if the point must be removed.
 bool PointFilter::Keeps(std::array<float, 3>* xyz) {
   const PointFilterSettings& s = settings_;
   const auto square = [](float v) { return static_cast<double>(v) * static_cast<double>(v); };

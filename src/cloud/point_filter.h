@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Removes, thins and moves points of clouds.
+// Removes, thins out and moves the points of clouds.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -13,25 +13,26 @@
 
 namespace lidar {
 
-/// The treatment of points without a return, and of removed points.
+/// What replaces points without a return, and points that the filter removes.
 enum class InvalidPoints {
-  kKeep,    // points without a return stay as they are, removed points become zero
+  kKeep,    // points without a return are kept; removed points become zero
   kZero,    // all fields zero
-  kNan,     // x, y and z are NaN, the rest zero
-  kRemove,  // removed from the cloud, which loses its rows
+  kNan,     // x, y and z are NaN, all other fields zero
+  kRemove,  // not in the cloud, which then has no rows
 };
 
-/// The steps of the filter, in their order.
+/// The settings of the filter, in the order in which they are applied.
 struct PointFilterSettings {
-  std::uint32_t beam_step = 1;    // every n-th row
-  std::uint32_t column_step = 1;  // every n-th column of the scan
+  std::uint32_t beam_step = 1;    // keep every n-th row
+  std::uint32_t column_step = 1;  // keep every n-th column of the scan
   double min_range_m = 0;
-  double max_range_m = 0;                         // 0: no limit
-  bool has_pose = false;                          // clouds have a pose that moves them
-  std::optional<Transform> transform;             // applied after the pose
-  std::optional<std::array<double, 6>> crop_box;  // least, then largest x, y, z, transformed [m]
-  bool crop_inside = false;                       // removes the inside of the box
-  double voxel_size_m = 0;                        // one point in each cube is kept; 0: all
+  double max_range_m = 0;              // 0 for no limit
+  bool has_pose = false;               // clouds are moved by their pose
+  std::optional<Transform> transform;  // applied after the pose
+  // The least x, y and z, then the largest [m]. It is applied after the transform.
+  std::optional<std::array<double, 6>> crop_box;
+  bool crop_inside = false;  // remove the points inside the box
+  double voxel_size_m = 0;   // keep one point per cube [m]; 0: keep all
   InvalidPoints invalid = InvalidPoints::kKeep;
 
   bool needs_xyz() const {
@@ -40,21 +41,22 @@ struct PointFilterSettings {
   }
 };
 
-/// Parses numbers with spaces or commas between them; nothing for other text.
+/// Parses numbers that are separated by spaces or commas. Returns nothing for other text.
 std::optional<std::vector<double>> ParseNumbers(const std::string& text);
-/// Parses sixteen numbers, row by row, or x, y, z [m], roll, pitch, yaw [degrees]: a turn about x,
-/// then y, then z, then a translation.
+/// Parses a transform. The text is sixteen numbers, row by row, or x, y, z [m], roll, pitch and yaw
+/// [degrees]. Six numbers mean a rotation about x, then about y, then about z, and then a
+/// translation.
 std::optional<Transform> ParseTransform(const std::string& text);
-/// `orientation` is a unit quaternion x, y, z, w.
+/// Converts a pose to a transform. `orientation` is a unit quaternion x, y, z, w.
 Transform FromPose(const std::array<double, 3>& position, const std::array<double, 4>& orientation);
 
-/// Rows of a cloud, with their columns.
+/// The input of the filter: a cloud with its rows and columns.
 struct CloudRows {
   const std::uint8_t* points = nullptr;
   std::uint32_t width = 0;
   std::uint32_t height = 0;
-  std::uint32_t first_column = 0;  // of the scan
-  Transform pose{};                // of the sensor, if the settings need it
+  std::uint32_t first_column = 0;  // index of the first column in the scan
+  Transform pose{};                // pose of the sensor, if the settings use it
 };
 
 struct FilteredCloud {
@@ -66,12 +68,13 @@ struct FilteredCloud {
 
 class PointFilter {
  public:
-  /// Returns nothing if the settings need x, y and z as adjacent F32 and `fields` lack them.
+  /// Returns nothing if the settings need x, y and z as adjacent F32, but `fields` does not have
+  /// them.
   static std::optional<PointFilter> Make(const PointFilterSettings& settings,
                                          const PointFields& fields, std::uint32_t point_step);
 
   FilteredCloud Apply(const CloudRows& cloud);
-  /// Number of returns that the filter removed.
+  /// Returns the number of returns that the filter has removed.
   std::uint64_t removed() const { return removed_; }
 
  private:
@@ -82,10 +85,10 @@ class PointFilter {
   bool IsFirstInVoxel(const std::array<float, 3>& xyz);
 
   PointFilterSettings settings_;
-  std::uint32_t xyz_;  // offset of x
+  std::uint32_t xyz_;  // offset of x in a point
   std::uint32_t point_step_;
-  Transform pose_{};                          // of the cloud
-  std::unordered_set<std::uint64_t> voxels_;  // of the cloud
+  Transform pose_{};                          // pose of the current cloud
+  std::unordered_set<std::uint64_t> voxels_;  // occupied cubes of the current cloud
   std::uint64_t removed_ = 0;
 };
 

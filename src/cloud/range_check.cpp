@@ -9,8 +9,8 @@
 namespace lidar {
 namespace {
 
-constexpr double kFloatRounding = 1e-5;  // of the range
-constexpr std::size_t kLookAhead = 256;  // points that are searched for a return
+constexpr double kFloatRounding = 1e-5;  // as a fraction of the range
+constexpr std::size_t kLookAhead = 256;  // number of points to search for a return
 
 }  // namespace
 
@@ -45,11 +45,12 @@ std::optional<RangeCheck::Contradiction> RangeCheck::Find(ByteView raw,
         static_cast<std::uint32_t>((first_column + i % columns) % projection_.columns());
     const auto found = PositionAt(raw.data + i * point_step_ + xyz_offset_);
     const auto expected = projection_.Point(beam, column, range_mm);
-    // libstdc++'s hypot() of three numbers is 0 where two are 0 and one is NaN.
+    // hypot() with three arguments is not used, because in libstdc++ it returns 0 if two arguments
+    // are 0 and the third is NaN.
     const double across = std::hypot(static_cast<double>(found[0] - expected[0]),
                                      static_cast<double>(found[1] - expected[1]));
     const double distance = std::hypot(across, static_cast<double>(found[2] - expected[2]));
-    // NaN counts as a contradiction, too.
+    // The condition is negated, so that NaN counts as a contradiction, too.
     if (!(distance <= 1e-3 * unit_mm_ + kFloatRounding * 1e-3 * range_mm))
       return Contradiction{beam, column, distance};
   }

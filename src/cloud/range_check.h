@@ -11,20 +11,22 @@
 
 namespace lidar {
 
-/// Detects points that an element between source and encoder has moved. Coding only ranges would
-/// undo the motion.
+/// Detects that an element between the source and the encoder has moved the points. If only ranges
+/// were coded, the decoder would put these points back to their old positions.
 class RangeCheck {
  public:
-  /// Returns nothing if the fields lack the range, or x, y and z as adjacent F32.
+  /// Returns nothing if the fields do not have a range, or x, y and z as adjacent F32.
   static std::optional<RangeCheck> Create(const PointFields& fields, std::uint32_t point_step,
                                           const SensorModel& model);
 
   struct Contradiction {
     std::uint32_t beam = 0;
     std::uint32_t column = 0;  // measurement id
-    double distance_m = 0;     // from the point to where its range puts it
+    // Distance between the point and the position that follows from its range.
+    double distance_m = 0;
   };
-  /// Checks kSamples returns of `raw`, which has whole beams.
+  /// Checks kSamples returns of `raw`. Returns the first contradiction, or nothing if there is
+  /// none. `raw` has all beams.
   std::optional<Contradiction> Find(ByteView raw, std::uint32_t first_column) const;
 
   static constexpr std::size_t kSamples = 4;

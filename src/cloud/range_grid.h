@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The grid for rounding ranges: has any step, and an exact bound of the error.
+// A grid for rounding ranges. It supports any step, and its error has an exact bound.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -8,17 +8,17 @@
 
 namespace lidar {
 
-/// Ranges are multiples of `unit_mm`, here called cells. Neighbouring cells share a bin and decode
-/// to its middle, rounded up to a whole millimetre. A step that is not a whole number of cells
-/// makes bins of two sizes, evenly mixed, so that encoded sizes change as smoothly as the step
-/// does. The error is that of the larger bins.
+/// Ranges are counted in cells of `unit_mm`. Neighbouring cells form a bin. A bin is decoded to its
+/// middle, rounded up to a whole millimetre. If the step is not a whole number of cells, the grid
+/// has bins of two sizes, evenly mixed. So the encoded size changes smoothly if the step changes.
+/// The error bound is the error of the larger bins.
 class RangeGrid {
  public:
   static constexpr std::uint32_t kMaxCells = 65'535;
   static constexpr std::uint32_t kMaxUnitMm = 1'000;
-  /// Greatest range for which sums and differences of bins fit an int32.
+  /// The greatest range for which the sum and the difference of two bins fit an int32.
   static constexpr std::uint32_t kMaxRangeMm = (1U << 28) - 1;
-  /// Number of parts of a cell; steps are multiples of a part.
+  /// The number of parts of a cell. Steps are multiples of a part.
   static constexpr std::uint32_t kParts = 256;
 
   constexpr RangeGrid() = default;
@@ -31,17 +31,17 @@ class RangeGrid {
     return grid;
   }
 
-  /// Returns the coarsest grid whose error stays within `error_m`, or the lossless grid if there is
-  /// none.
+  /// Returns the coarsest grid whose error is at most `error_m`. If there is none, returns the
+  /// lossless grid.
   static RangeGrid ForError(double error_m, std::uint32_t unit_mm) {
-    // The small term turns a bound such as 0.02 m, which is not an exact double, into 20 mm.
-    // Fractions of a millimetre do not matter, because errors are whole millimetres.
+    // The small term makes a bound such as 0.02 m, which is not an exact double, count as 20 mm.
+    // Fractions of a millimetre are ignored, because errors are whole millimetres.
     const double whole_mm = std::floor(1e3 * error_m + 1e-9);
     const double cells = std::floor(2 * whole_mm / unit_mm) + 1;
     return {unit_mm, static_cast<std::uint32_t>(std::clamp(cells, 1.0, double{kMaxCells}))};
   }
-  /// Returns the coarsest grid whose step is at most `step_m`, or the lossless grid if there is
-  /// none.
+  /// Returns the coarsest grid whose step is at most `step_m`. If there is none, returns the
+  /// lossless grid.
   static RangeGrid ForStep(double step_m, std::uint32_t unit_mm) {
     const double parts = std::floor(1e3 * kParts * step_m / unit_mm + 1e-6);
     constexpr double kMost = double{kMaxCells} * kParts;
@@ -53,12 +53,12 @@ class RangeGrid {
            parts_ <= kMaxCells * kParts;
   }
   std::uint32_t unit_mm() const { return unit_mm_; }
-  /// The step in cells / kParts.
+  /// Returns the step in units of 1 / kParts cells.
   std::uint32_t parts() const { return parts_; }
   double step_m() const { return 1e-3 / kParts * parts_ * unit_mm_; }
-  /// Number of cells in each of the larger bins.
+  /// Returns the number of cells in the larger bins.
   std::uint32_t largest_bin() const { return (parts_ + kParts - 1) / kParts; }
-  /// The largest distance between a range and RangeOf(BinOf(range)).
+  /// Returns the largest possible distance between a range and RangeOf(BinOf(range)).
   double error_m() const {
     const std::uint32_t error_mm = ((largest_bin() - 1) * unit_mm_ + 1) / 2;
     return 1e-3 * error_mm;
@@ -67,14 +67,15 @@ class RangeGrid {
   std::uint32_t BinOf(std::uint32_t range_mm) const {
     return static_cast<std::uint32_t>(std::uint64_t{range_mm / unit_mm_} * kParts / parts_);
   }
-  /// BinOf() of many ranges, without divisions.
+  /// Computes BinOf() for many ranges, without divisions.
   class BinFinder {
    public:
     explicit BinFinder(const RangeGrid& grid)
         : per_mm_(1.0 / grid.unit_mm_), per_part_(1.0 / grid.parts_) {}
-    /// `range_mm` is up to kMaxRangeMm.
+    /// Requires that `range_mm` is at most kMaxRangeMm.
     std::uint32_t Of(std::uint32_t range_mm) const {
-      // Adding a half keeps a quotient so far from an integer that rounding cannot change it.
+      // Adding 0.5 keeps the quotient away from integers, so that its rounding error cannot change
+      // the bin.
       const auto cells =
           static_cast<std::int32_t>((static_cast<std::int32_t>(range_mm) + 0.5) * per_mm_);
       return static_cast<std::uint32_t>(
@@ -88,18 +89,20 @@ class RangeGrid {
   std::uint32_t RangeOf(std::uint32_t bin) const {
     return static_cast<std::uint32_t>(Middle<std::uint64_t>(bin));
   }
-  /// Returns true if `bin` decodes to a range, not 0, within `error_mm` of `range_mm`.
+  /// Returns true if `bin` is decoded to a range that is not 0 and differs from `range_mm` by at
+  /// most `error_mm`.
   bool ComesBackWithin(std::uint32_t error_mm, std::uint32_t bin, std::uint32_t range_mm) const {
     const std::uint32_t back = RangeOf(bin);
     return back > 0 && (back > range_mm ? back - range_mm : range_mm - back) <= error_mm;
   }
-  /// Replaces each bin by RangeOf(bin). Returns false if a range is above kMaxRangeMm.
+  /// Replaces each bin by RangeOf(bin). Returns false if a resulting range would exceed
+  /// kMaxRangeMm.
   bool ToRanges(std::vector<std::int32_t>* bins) const {
     std::uint32_t last = 0;
     for (const std::int32_t bin : *bins) last |= static_cast<std::uint32_t>(bin);
-    // The OR of all bins is at least the largest bin, and less than twice the largest bin.
+    // The bitwise OR of all bins is at least the largest bin, and less than twice the largest bin.
     const std::uint64_t parts = (last + std::uint64_t{1}) * parts_ + kParts;
-    // Usually 32 bits suffice, and a processor can compute several numbers at once.
+    // Usually numbers of 32 bits are large enough, which lets the compiler use vector instructions.
     if (parts <= UINT32_MAX && 2 * unit_mm_ * (parts / kParts + 1) <= kMaxRangeMm) {
       for (std::int32_t& bin : *bins)
         bin = static_cast<std::int32_t>(Middle<std::uint32_t>(static_cast<std::uint32_t>(bin)));
@@ -114,7 +117,7 @@ class RangeGrid {
   }
 
  private:
-  /// Returns the middle of a bin's cells. Cells belong to the bin in which they begin.
+  /// Returns the middle of the cells in a bin. A cell belongs to the bin in which it begins.
   template <class Wide>
   Wide Middle(Wide bin) const {
     const Wide first = (bin * parts_ + (kParts - 1)) / kParts;

@@ -19,7 +19,7 @@ std::array<float, 3> Apply(const std::array<float, 9>& m, const std::array<float
           m[6] * v[0] + m[7] * v[1] + m[8] * v[2]};
 }
 
-// Four columns, in the processor's vector registers.
+// Numbers of four columns, which fit a vector register of the processor.
 using Floats = float __attribute__((vector_size(16)));
 using Ints = std::int32_t __attribute__((vector_size(16)));
 
@@ -30,7 +30,8 @@ V Load(const T* from) {
   return v;
 }
 
-/// Writes four points: x, y and z of each, and the four bytes of `behind` if `bytes` includes them.
+/// Writes x, y and z of four points. If `bytes` is 16, also writes the four bytes of `behind` after
+/// each point.
 void StorePoints(Floats x, Floats y, Floats z, Floats behind, std::size_t bytes, std::uint8_t* to,
                  std::size_t point_step) {
   const Floats xy_low = __builtin_shufflevector(x, y, 0, 4, 1, 5);
@@ -49,7 +50,7 @@ void StorePoints(Floats x, Floats y, Floats z, Floats behind, std::size_t bytes,
 
 }  // namespace
 
-/// Columns of one beam that do not wrap.
+/// A range of columns of one beam that does not wrap around the end of the scan.
 struct RangeProjection::Run {
   std::uint32_t beam;
   std::uint32_t first;
@@ -115,7 +116,7 @@ double RangeProjection::RangeOf(std::uint32_t beam, std::uint32_t column, const 
   return 1e3 * static_cast<double>(along + beam_origin_m_);
 }
 
-/// Computes the same as Point(), for four columns at a time.
+/// Computes the same points as Point(), but four columns at a time.
 template <bool kBehind>
 void RangeProjection::ProjectRun(const Run& run, const std::uint32_t* behind) const {
   constexpr std::uint32_t kAtOnce = 4;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Range image to xyz and back, with the formulas of the Ouster SDK (xyzlut).
+// Converts a range image to xyz and back, with the formulas of the Ouster SDK (xyzlut).
 #pragma once
 #include <array>
 #include <cstddef>
@@ -11,29 +11,29 @@
 namespace lidar {
 
 struct ColumnWindow {
-  std::uint32_t first = 0;  // measurement id of the first column; the window may wrap
+  std::uint32_t first = 0;  // measurement id of the first column; the window may wrap around
   std::uint32_t count = 0;
 };
 
-/// Turns ranges into points: p = (r - |beam_to_lidar|) direction(beam, column) + offset(column).
-/// Immutable, so threads may share one.
+/// Converts ranges to points: p = (r - |beam_to_lidar|) direction(beam, column) + offset(column).
+/// It is immutable, so several threads may use the same object.
 class RangeProjection {
  public:
   explicit RangeProjection(const SensorModel& model);
 
-  /// x, y, z [m] of one return at `range_mm`; zeros for range 0.
+  /// Returns x, y and z [m] of a return at `range_mm`, or zeros if the range is 0.
   std::array<float, 3> Point(std::uint32_t beam, std::uint32_t column,
                              std::uint32_t range_mm) const;
-  /// Unit vector along which a range moves its point.
+  /// Returns the unit vector along which the point moves if its range grows.
   std::array<float, 3> Direction(std::uint32_t beam, std::uint32_t column) const;
-  /// Range [mm, not rounded] whose point is nearest to `xyz` [m].
+  /// Returns the range [mm, not rounded] whose point is nearest to `xyz` [m].
   double RangeOf(std::uint32_t beam, std::uint32_t column, const float* xyz) const;
-  /// Projects the ranges [mm, below 2^31] of all beams: writes x, y and z of `ranges[beam *
+  /// Projects the ranges [mm, below 2^31] of all beams. Writes x, y and z of `ranges[beam *
   /// window.count + i]` as F32 to `xyz + point_step * (beam * window.count + i)`.
   void Project(const std::uint32_t* ranges, ColumnWindow window, std::uint8_t* xyz,
                std::size_t point_step) const;
-  /// Projects one beam. If `behind` is not null it has the four bytes to write after z in each
-  /// point, so that points of 16 bytes are written at once.
+  /// Projects one beam. `behind` is null, or has four bytes for each point, which are written after
+  /// z. With `behind`, points of 16 bytes are written in a single step.
   void ProjectBeam(std::uint32_t beam, const std::uint32_t* ranges, ColumnWindow window,
                    const std::uint32_t* behind, std::uint8_t* xyz, std::size_t point_step) const;
 
@@ -43,8 +43,8 @@ class RangeProjection {
  private:
   using Vector = std::array<float, 3>;
   struct Column {
-    std::array<float, 9> rotation;  // by the encoder, then by lidar_to_sensor
-    Vector offset;                  // of the beams' origin, in metres
+    std::array<float, 9> rotation;  // rotation by the encoder, then by lidar_to_sensor
+    Vector offset;                  // position of the beams' origin [m]
   };
 
   struct Run;
@@ -53,10 +53,10 @@ class RangeProjection {
 
   std::vector<Vector> beams_;  // directions at encoder angle 0
   std::vector<Column> columns_;
-  /// columns_ transposed (the rotation's nine numbers, then the offset's three), so that
-  /// neighbouring columns are computed at once.
+  /// The columns transposed: first the nine numbers of the rotation, then the three of the offset.
+  /// So the numbers of neighbouring columns are adjacent and can be computed at once.
   std::array<std::vector<float>, 12> numbers_;
-  float beam_origin_m_ = 0;  // |beam_to_lidar|
+  float beam_origin_m_ = 0;  // length of the vector beam_to_lidar [m]
 };
 
 }  // namespace lidar

@@ -10,7 +10,7 @@ namespace lidar {
 namespace {
 
 constexpr std::uint8_t kVersion = 1;
-constexpr std::size_t kTransformValues = 12;  // the last row is always 0 0 0 1
+constexpr std::size_t kTransformValues = 12;  // without the last row, which is always 0 0 0 1
 constexpr double kMaxDegrees = 720;
 
 bool IsSane(double v, double limit) { return std::isfinite(v) && std::abs(v) <= limit; }

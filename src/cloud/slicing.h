@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The number of slices into which a source cuts a scan.
+// Computes into how many slices a source divides a scan.
 #pragma once
 #include <cstdint>
 
@@ -8,20 +8,20 @@
 namespace lidar {
 
 struct ScanShape {
-  std::uint32_t columns = 0;  // of a full turn
+  std::uint32_t columns = 0;  // columns of a full turn
   std::uint32_t beams = 0;
-  Duration period{};  // of one turn
+  Duration period{};  // duration of a turn
 };
 
-/// The largest divisor of `columns` that is not above `slices`; at least 1.
+/// Returns the largest divisor of `columns` that is at most `slices`, but at least 1.
 constexpr std::uint32_t SlicesDividing(std::uint32_t columns, std::uint32_t slices) {
   for (; slices > 1; --slices)
     if (columns % slices == 0) return slices;
   return 1;
 }
 
-/// The automatic rule: a sweep of about 12.5 ms, or longer if a slice would have too few points to
-/// compress well.
+/// Returns the automatic number of slices. A slice takes about 12.5 ms, or longer if it would
+/// otherwise have too few points to compress well.
 constexpr std::uint32_t AutomaticSlices(const ScanShape& scan) {
   constexpr Duration kSweep{12'500'000};
   constexpr std::uint64_t kPointsPerSlice = 2000;
@@ -32,8 +32,8 @@ constexpr std::uint32_t AutomaticSlices(const ScanShape& scan) {
                         wanted < scan.columns ? static_cast<std::uint32_t>(wanted) : scan.columns);
 }
 
-/// The property `slices-per-scan` of the sources: 0 is automatic, and a count that does not divide
-/// the columns is rounded down to one that does.
+/// Returns the number of slices for a value of the property `slices-per-scan`. The value 0 means
+/// automatic. Other values are rounded down to a divisor of the number of columns.
 constexpr std::uint32_t SlicesPerScan(std::uint32_t requested, const ScanShape& scan) {
   if (requested == 0) return AutomaticSlices(scan);
   return SlicesDividing(scan.columns, requested < scan.columns ? requested : scan.columns);

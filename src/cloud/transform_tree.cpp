@@ -14,16 +14,17 @@ namespace {
 using Quaternion = std::array<double, 4>;
 using Position = std::array<double, 3>;
 
-/// tf2's tolerance for a unit quaternion.
+/// The tolerance for the length of a unit quaternion, as in tf2.
 constexpr double kUnitTolerance = 0.01;
-/// A robot is never as far as the moon. The limit keeps sums finite [m].
+/// Farther positions are invalid, because no robot is as far as the moon. The limit keeps sums
+/// finite [m].
 constexpr double kFarthest = 1e9;
-/// Greatest depth of frames: a longer path is assumed to be a circle.
+/// The greatest depth of the tree. A longer path is assumed to be a cycle.
 constexpr std::size_t kMaxDepth = 64;
-/// Orientations whose cosine is above this are interpolated along a straight line.
+/// If the cosine between two orientations is above this limit, they are interpolated linearly.
 constexpr double kNearlyParallel = 0.9995;
 
-/// ROS 1 wrote frames with a slash.
+/// Removes a leading slash, which frame names in ROS 1 have.
 void DropSlash(std::string* frame) {
   if (!frame->empty() && frame->front() == '/') frame->erase(0, 1);
 }
@@ -38,7 +39,7 @@ Quaternion Normalised(Quaternion q) {
   return q;
 }
 
-/// The rotation b, followed by a.
+/// Composes two rotations: applies b first, then a.
 Quaternion Times(const Quaternion& a, const Quaternion& b) {
   const auto& [ax, ay, az, aw] = a;
   const auto& [bx, by, bz, bw] = b;
@@ -53,7 +54,7 @@ Position Turned(const Quaternion& q, const Position& p) {
   return {turned[0], turned[1], turned[2]};
 }
 
-/// The pose b, followed by a.
+/// Composes two poses: applies b first, then a.
 FramePose Times(const FramePose& a, const FramePose& b) {
   FramePose out;
   out.orientation = Normalised(Times(a.orientation, b.orientation));
@@ -70,7 +71,8 @@ FramePose Inverse(const FramePose& pose) {
   return out;
 }
 
-/// `part` of the way from a to b, by the shorter turn.
+/// Interpolates between two poses: returns a if `part` is 0, and b if `part` is 1. Rotates by the
+/// shorter of the two possible rotations.
 FramePose Between(const FramePose& a, const FramePose& b, double part) {
   FramePose out;
   for (std::size_t i = 0; i < 3; ++i)
@@ -118,7 +120,8 @@ bool TransformTree::Set(std::string parent, std::string child, Time at, const Fr
     return true;
   }
   link.earlier.Add(parent, sample);
-  // too_old counts also poses that `earlier` has dropped because they are far from its newest pose.
+  // too_old also counts poses that `earlier` has dropped because they were far from its newest
+  // pose.
   if (++link.too_old < kRestart) return false;
   link.history = std::exchange(link.earlier, {});
   link.too_old = 0;
@@ -129,7 +132,7 @@ bool TransformTree::Link::IsTooOld(Time at) const {
   return !history.samples.empty() && history.samples.back().at - at > kHistory;
 }
 
-/// A frame has one parent: a pose in another parent clears the history.
+/// Adds a pose. A frame has only one parent, so a pose in another parent clears the history.
 void TransformTree::History::Add(const std::string& of, const Sample& sample) {
   if (parent != of) *this = {of, {}};
   const auto place = std::lower_bound(samples.begin(), samples.end(), sample.at,
@@ -148,7 +151,7 @@ bool TransformTree::Knows(const std::string& frame) const {
                      [&](const auto& entry) { return entry.second.history.parent == frame; });
 }
 
-/// Returns the frame, its parent, and so on.
+/// Returns the frame, its parent, the parent's parent, and so on.
 std::vector<std::string> TransformTree::PathUp(const std::string& frame) const {
   std::vector<std::string> path = {frame};
   auto link = links_.find(frame);
@@ -157,7 +160,8 @@ std::vector<std::string> TransformTree::PathUp(const std::string& frame) const {
   return path;
 }
 
-/// Returns the pose that takes points of the first frame of `path` to the frame `steps` above it.
+/// Returns the pose that converts points from the first frame of `path` to the frame `steps` above
+/// it.
 std::optional<FramePose> TransformTree::Climb(const std::vector<std::string>& path,
                                               std::size_t steps, std::optional<Time> at,
                                               Answer* answer) const {

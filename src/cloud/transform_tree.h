@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The transforms between frames over time, as ROS's tf2 keeps them.
+// Stores the transforms between frames over time, like tf2 in ROS.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -14,33 +14,34 @@
 
 namespace lidar {
 
-/// Takes points of a child frame to its parent.
+/// The pose of a child frame in its parent frame. It converts points from the child to the parent.
 struct FramePose {
   std::array<double, 3> position{};                  // m
   std::array<double, 4> orientation = {0, 0, 0, 1};  // unit quaternion x, y, z, w
 };
 
-/// Frames, each below one parent, in bounded memory.
+/// A tree of frames, in which each frame has one parent. Its memory is bounded.
 class TransformTree {
  public:
   static constexpr std::size_t kMaxFrames = 512;
-  static constexpr std::size_t kMaxSamples = 2048;  // per frame
+  static constexpr std::size_t kMaxSamples = 2048;  // for each frame
   static constexpr Duration kHistory = std::chrono::seconds(10);
-  static constexpr std::size_t kRestart = 10;  // poses
+  static constexpr std::size_t kRestart = 10;  // number of poses
 
-  /// Sets the pose of `child` in `parent`, at a time or permanently. Returns false for an invalid
-  /// pose, unnamed or equal frames, or too many frames. Like tf2, it refuses poses older than
-  /// kHistory. kRestart such poses of a frame in a row show that the clock went back: they then
-  /// replace the history, as far as it can hold them.
+  /// Sets the pose of `child` in `parent`, at the time `at` or permanently. Returns false for an
+  /// invalid pose, for empty or equal frame names, or for too many frames. Like tf2, it also
+  /// refuses a pose that is more than kHistory older than the newest pose. But if kRestart of these
+  /// poses arrive in a row, the clock was set back, and these poses replace the history.
   bool Set(std::string parent, std::string child, Time at, const FramePose& pose, bool for_good);
 
   struct Answer {
-    std::optional<Transform> transform;  // takes points of the source to the target
-    std::string why;                     // why there is none, for a user
-    bool may_come = false;               // a later pose may lead to a transform
-    Time newest{};                       // of the newest pose, if a later pose is needed
+    std::optional<Transform> transform;  // converts points from the source to the target
+    std::string why;                     // if there is no transform: the reason, for the user
+    bool may_come = false;               // true if a later pose may complete the transform
+    Time newest{};                       // time of the newest pose, if a later pose is needed
   };
-  /// Poses are interpolated between two times. Without a time the newest poses are used.
+  /// Returns the transform from `source` to `target` at the time `at`. Poses are interpolated
+  /// between two times. If `at` is empty, the newest poses are used.
   Answer Find(const std::string& target, const std::string& source, std::optional<Time> at) const;
 
   std::size_t frames() const { return links_.size(); }
@@ -52,15 +53,15 @@ class TransformTree {
   };
   struct History {
     std::string parent;
-    std::deque<Sample> samples;  // by time
+    std::deque<Sample> samples;  // sorted by time
 
     void Add(const std::string& of, const Sample& sample);
   };
   struct Link {
     bool for_good = false;
     History history;          // never empty
-    History earlier;          // from a clock that may have gone back
-    std::size_t too_old = 0;  // too old poses in a row
+    History earlier;          // poses that are too old, after which the clock may have gone back
+    std::size_t too_old = 0;  // number of poses in a row that were too old
 
     bool IsTooOld(Time at) const;
   };
@@ -70,7 +71,7 @@ class TransformTree {
   std::optional<FramePose> Climb(const std::vector<std::string>& path, std::size_t steps,
                                  std::optional<Time> at, Answer* answer) const;
 
-  std::unordered_map<std::string, Link> links_;  // by child
+  std::unordered_map<std::string, Link> links_;  // by the name of the child
 };
 
 }  // namespace lidar
