@@ -7,18 +7,21 @@
 namespace lidar::odometry {
 namespace {
 
-/// Standard deviations for a vehicle: of its velocity while that is unknown, and of its
-/// acceleration. Each has a translation [m/s, m/s^2] and a rotation [rad/s, rad/s^2].
+/// Standard deviations for a vehicle: first those of a velocity that is not known, then those of
+/// the acceleration. The first constant of each pair is for the translation [m/s, m/s^2], the
+/// second for the rotation [rad/s, rad/s^2].
 constexpr double kSpeed = 15;
 constexpr double kTurn = 0.5;
 constexpr double kAcceleration = 2;
 constexpr double kTurnAcceleration = 1;
-/// Error, noise and scale of a gyroscope together, as an angular acceleration [rad/s^2].
+/// The errors of a gyroscope, including its noise and scale, expressed as an angular acceleration
+/// [rad/s^2].
 constexpr double kTurnDrift = 0.2;
-/// A pose's least variance [m^2, rad^2]. It keeps a division finite between scans of the same time.
+/// The least variance of a pose [m^2, rad^2]. It avoids a division by zero if two scans have the
+/// same time.
 constexpr double kLeastVariance = 1e-8;
 
-// Indices of the parts of the joint error.
+// Indices of the parts in the joint error.
 constexpr Eigen::Index kMap = 0;
 constexpr Eigen::Index kPose = 6;
 constexpr Eigen::Index kVelocity = 12;
@@ -64,8 +67,8 @@ void Confidence::Predict(const Pose& motion, Duration gap, bool turn_measured) {
   Joint step = Joint::Identity();
   step.block<6, 6>(kMap, kMap) = step.block<6, 6>(kPose, kPose) = Adjoint(motion.Inverse());
   step.block<6, 6>(kPose, kVelocity) = t * Matrix6::Identity();
-  // The state has the mean velocity since the last pose, so the acceleration enters before the
-  // step.
+  // The state has the mean velocity since the last pose, so the acceleration is added before the
+  // transition.
   joint_.diagonal().segment<6>(kVelocity) +=
       Spread(kAcceleration, turn_measured ? kTurnDrift : kTurnAcceleration) * (t * t);
   joint_ = step * joint_ * step.transpose();
@@ -78,7 +81,8 @@ Twist Confidence::Observe(const Matrix6& information, const Eigen::Matrix3d& uno
   const Twist accelerated = joint_.block<6, 6>(kVelocity, kPose) * (PoseInformation() * correction);
   Eigen::Matrix<double, 18, 6> gain =
       joint_.middleCols<6>(kPose) * (Matrix6::Identity() + told * pose).inverse();
-  // An alignment corrects only the observed directions of the pose, so Joseph's form is needed.
+  // The gain is not optimal, because an alignment corrects only the observed directions of the
+  // pose. So the covariance is updated in Joseph's form, which is valid for any gain.
   const Eigen::Matrix3d observed = Eigen::Matrix3d::Identity() - unobserved;
   gain.middleRows<6>(kMap).setZero();
   gain.middleRows<3>(kPose) = observed * gain.middleRows<3>(kPose).eval();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Estimates how far a pose may be off, by a Kalman filter of the errors of pose and velocity.
+// Estimates the error of a pose with a Kalman filter of the errors of pose and velocity.
 #pragma once
 #include "src/base/time.h"
 #include "src/odometry/pose.h"
@@ -8,44 +8,45 @@ namespace lidar::odometry {
 
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-/// Errors are twists in the sensor's frame. Each scan is aligned to the map, so
-/// errors add up only over the scans that enter the map.
+/// The covariance of the estimation errors, which are twists in the sensor's frame. Each scan is
+/// aligned to the map, so errors accumulate only over the scans that are added to the map.
 class Confidence {
  public:
   Confidence();
 
-  /// Makes the velocity unknown, and keeps the error of the pose.
+  /// Makes the velocity unknown. The error of the pose does not change.
   void ForgetVelocity();
   void SetVelocityKnown();
-  /// Moves the sensor by `motion`, which the velocity predicts; with `turn_measured` a gyroscope
-  /// measured its rotation.
+  /// Predicts the error after the motion `motion`. If `turn_measured` is true, a gyroscope has
+  /// measured the rotation of this motion.
   void Predict(const Pose& motion, Duration gap, bool turn_measured = false);
-  /// Takes an alignment. `information` is that of the pose if the errors of its points are
-  /// independent. `unobserved` projects onto the directions in which the prediction is not
-  /// corrected. `correction` leads from the predicted pose to the found one. Returns the change of
-  /// the velocity.
+  /// Updates the error after an alignment. `information` is the information of the aligned pose,
+  /// computed as if the errors of points were independent. `unobserved` is the projection onto the
+  /// directions in which the pose was not corrected. `correction` is the motion from the predicted
+  /// pose to the aligned pose. Returns the change of the velocity.
   Twist Observe(const Matrix6& information, const Eigen::Matrix3d& unobserved,
                 const Twist& correction);
-  /// Begins to map from the present pose.
+  /// Notes that the scan at the current pose was added to the map.
   void EnterMap();
 
-  /// Information of the pose relative to the map.
+  /// Returns the information of the pose relative to the map.
   Matrix6 PoseInformation() const;
-  /// Errors of neighbouring points depend on each other: this number of points gives as much
-  /// information as one independent point.
+  /// The number of points that give as much information as one independent point. The errors of
+  /// neighbouring points depend on each other.
   static constexpr double kPointsOfOne = 12;
-  /// Covariance of the pose since the first scan, in the sensor's frame.
+  /// Returns the covariance of the pose relative to the first scan, in the sensor's frame.
   Matrix6 covariance() const;
 
  private:
-  /// The errors of the map here, of the pose relative to the map, and of the velocity: six numbers
-  /// each.
+  /// The covariance of three errors of six numbers each: the error of the map at the sensor, the
+  /// error of the pose relative to the map, and the error of the velocity.
   using Joint = Eigen::Matrix<double, 18, 18>;
 
   Joint joint_ = Joint::Zero();
 };
 
-/// Returns the matrix that carries an error across a motion of the sensor.
+/// Returns the adjoint matrix of `pose`, which transforms a twist from the frame of the body to the
+/// outer frame.
 Matrix6 Adjoint(const Pose& pose);
 
 }  // namespace lidar::odometry

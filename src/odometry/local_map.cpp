@@ -9,7 +9,8 @@ namespace lidar::odometry {
 namespace {
 
 constexpr std::uint32_t kPointsOfASurface = 8;
-/// Greatest variance of points across a surface, relative to their variance along it.
+/// The greatest variance of points across a surface, as a fraction of the variance along the
+/// surface.
 constexpr double kFlatness = 0.1;
 
 constexpr std::array<Voxel, 7> kCross = {
@@ -17,8 +18,9 @@ constexpr std::array<Voxel, 7> kCross = {
 
 Voxel operator+(const Voxel& a, const Voxel& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 
-/// Returns the squared distance from a point to the cube `step` away. `inside` is the point,
-/// relative to the corner of its own cube of edge `size`.
+/// Returns the squared distance between a point and a neighbouring cube. `inside` is the point
+/// relative to the corner of its own cube. `step` is the index of the neighbouring cube relative to
+/// this cube, and `size` is the edge length of a cube.
 double SquaredGap(const Eigen::Vector3d& inside, const Voxel& step, double size) {
   const auto gap = [size](double c, std::int32_t s) { return s == 0 ? 0.0 : s > 0 ? size - c : c; };
   const double x = gap(inside.x(), step.x);
@@ -129,8 +131,8 @@ std::optional<LocalMap::Neighbour> LocalMap::FindNearest(const Eigen::Vector3d& 
   return neighbour;
 }
 
-/// Fits a surface to the points of the cube. If they are few, adds the points of cubes that share a
-/// face with it.
+/// Fits a plane to the points of the cube. If the cube has few points, also uses the points of
+/// cubes that share a face with it.
 void LocalMap::UpdateNormal(const Voxel& voxel, Block* block) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();

@@ -11,66 +11,73 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// Edges of the cubes that thin out the map's points and the aligned points, relative to the map's
-/// cubes. KISS-ICP, section III-B.
+/// Edge lengths of the cubes that thin out the points of the map and the aligned points, in cubes
+/// of the map (KISS-ICP, section III-B).
 constexpr double kMapGrid = 0.5;
 constexpr double kAlignedGrid = 1.5;
-/// Edge of the cubes in the search for the first motion, relative to the map's cubes.
+/// Edge length of the cubes in the search for the first motion, in cubes of the map.
 constexpr double kFirstGrid = 4;
-/// Reach and kernel in standard deviations of the motion's error. KISS-ICP, section III-D.
+/// Search distance and kernel scale, in standard deviations of the prediction error (KISS-ICP,
+/// section III-D).
 constexpr double kReach = 3;
 constexpr double kKernel = 1.0 / 3;
-/// Roughness of grass and gravel, relative to the map's cubes: a narrower kernel fits noise.
+/// The least kernel scale in cubes of the map: the roughness of grass and gravel. With a narrower
+/// kernel the alignment would follow noise.
 constexpr double kLeastKernel = 0.08;
-/// More points cost time and do not improve the pose.
+/// The greatest number of aligned points. More points take time, but do not improve the pose.
 constexpr std::size_t kMostAligned = 4000;
-/// A scan does not fit if a smaller share of its points has a neighbour.
+/// A scan fits the map only if at least this share of its points fits.
 constexpr double kLeastInliers = 0.3;
-/// A scan is of another place if its share of fitting upright surfaces is less than this part of
-/// the usual share. The rule ends after kNewView cubes of motion: the view is new then.
+/// A scan shows another place if the share of its upright surfaces that fit is less than this
+/// fraction of the usual share. The limit decreases with motion and ends after kNewView cubes of
+/// the map, because the view is new then.
 constexpr double kLeastOfUsual = 0.65;
 constexpr double kNewView = 30;
-constexpr int kUsualScans = 10;  // number of scans that set the usual share
-/// Number of times that the motion between the first two scans is refined.
+constexpr int kUsualScans = 10;  // number of scans that determine the usual share
+/// The number of times that the motion between the first two scans is refined.
 constexpr int kFirstRounds = 4;
-/// Number of steps of a sweep at which the motion is computed.
+/// The number of time steps within a scan for which the motion is computed.
 constexpr int kPhases = 1024;
-/// Longest step of time over which a turn is taken as steady.
+/// The longest time step over which the angular velocity is assumed to be constant.
 constexpr Duration kTurnStep = milliseconds(100);
-constexpr int kLostForGood = 10;  // number of lost scans after which a new map begins
-/// A map with fewer fitting scans may have begun with a wrong motion: the first lost scan ends it.
+constexpr int kLostForGood = 10;  // after this many lost scans a new map begins
+/// A map to which fewer scans have been aligned may have begun with a wrong motion, so the first
+/// lost scan ends this map.
 constexpr int kTrustedMap = 3;
-/// Deviation for the search without a known motion [m].
+/// Standard deviation of the prediction error for a search without a known motion [m].
 constexpr double kWidestSigma = 2;
-/// Greatest acceleration of a vehicle [m/s^2, rad/s^2]. kSlack, in cubes, is added for the errors
-/// of the first motion and of alignments.
+/// The greatest acceleration of a vehicle [m/s^2, rad/s^2]. kSlack, in cubes of the map, allows for
+/// errors of the first motion and of alignments.
 constexpr double kMostAcceleration = 30;
 constexpr double kMostTurnAcceleration = 30;
 constexpr double kSlack = 0.3;
-/// Greatest distance of a fitting point, relative to the map's cubes.
+/// The greatest distance at which a point counts as fitting, in cubes of the map.
 constexpr double kFit = 0.2;
-/// Weight of neighbours without a surface, if scans show surfaces. It is small, because such
-/// neighbours hide a direction that no surface holds.
+/// Weight of neighbours without a surface, for scans that show surfaces themselves. The weight is
+/// small, because these neighbours hide that surfaces do not constrain a direction.
 constexpr double kSparePointWeight = 0.05;
 constexpr double kPointTurn = 0.3;
 constexpr double kLeastConstraint = 0.002;
 constexpr double kLeastBalance = 0.02;
-/// The motion of the sensor after which a scan enters the map: relative to the map's cubes, and
-/// [rad].
+/// The motion of the sensor after which a scan is added to the map: in cubes of the map, and in
+/// rad.
 constexpr double kMapStep = 1;
 constexpr double kMapTurn = 0.09;
-/// Distant ground meets few beams. A map of it has wrong surfaces and tilts the sensor, so points
-/// beyond kMapReach enter the map only if less than kLeastNear of the scan is nearer.
-constexpr double kMapReach = 40;  // cubes
+/// Distant ground is met by few beams, so a map of it has wrong surfaces, which would tilt the
+/// sensor. Points beyond kMapReach are added to the map only if less than kLeastNear of the scan is
+/// nearer.
+constexpr double kMapReach = 40;  // in cubes of the map
 constexpr double kLeastNear = 0.25;
-/// A scan nearer than this to the last one in the map repeats its lines. Relative to the map's
-/// cubes.
+/// The distance in cubes of the map below which a scan has the same lines of points as the last
+/// scan in the map.
 constexpr double kSameLines = 0.5;
 
-/// Moves each point of a scan by the sensor's motion from its sample to the middle of the scan.
+/// The motion of the sensor during a scan. It moves a point of the scan to where the point would be
+/// if it had been sampled in the middle of the scan.
 class Sweep {
  public:
-  /// `moved` has the motion at kPhases + 1 times of the sweep; it is empty for a scan without skew.
+  /// `moved` has the motion of the sensor at kPhases + 1 times of the scan. It is empty if points
+  /// are not corrected.
   Sweep(const TimedPoints& scan, std::vector<Pose> moved) : scan_(scan), moved_(std::move(moved)) {
     if (scan.phases.size() != scan.points.size()) moved_.clear();
   }
@@ -149,7 +156,8 @@ std::vector<Pose> Odometry::SweepAround(const Moving& state, Time middle, Durati
   return moved;
 }
 
-/// Chooses the settings. Scans with beam numbers show surfaces by themselves.
+/// Returns the settings for a scan. If the scan has beam numbers, its surfaces are found in the
+/// scan itself.
 RegistrationSettings Odometry::SettingsFor(const TimedPoints& scan, const Pose& guess) const {
   RegistrationSettings settings = settings_.registration;
   settings.fit_m = kFit * settings_.voxel_size_m;
@@ -163,7 +171,8 @@ RegistrationSettings Odometry::SettingsFor(const TimedPoints& scan, const Pose& 
   return settings;
 }
 
-/// Returns the points to align: one of each cube, at most kMostAligned, evenly chosen.
+/// Returns the points to align: the first point of each cube, but at most kMostAligned points,
+/// chosen evenly.
 Surface Odometry::ThinOut(const Surface& fine) const {
   const auto kept = FirstOfEachCube(fine.points, kAlignedGrid * settings_.voxel_size_m);
   const std::size_t count = std::min(kept.size(), kMostAligned);
@@ -182,7 +191,7 @@ Surface Odometry::SelectPoints(const TimedPoints& scan, const Moving& state, Tim
   const double farthest = settings_.max_range_m * settings_.max_range_m;
   const Sweep sweep(scan, SweepAround(state, middle, duration));
   Points selected;
-  std::vector<std::size_t> origins;  // indices of the points in the scan
+  std::vector<std::size_t> origins;  // index of each selected point in the scan
   selected.reserve(scan.points.size());
   origins.reserve(scan.points.size());
   for (std::size_t i = 0; i < scan.points.size(); ++i) {
@@ -227,8 +236,10 @@ void Odometry::AddToMap(const Surface& fine) {
   confidence_.EnterMap();
 }
 
-/// Scans between two map steps stay out of the map. Each would add the error of its pose. Its lines
-/// of points, which move with the sensor, would hold the pose back.
+/// Returns true if the sensor has moved far enough since the last scan that was added to the map.
+/// Scans before that are not added, because the error of their pose would add to the map's error.
+/// Also, the lines of points on the ground move with the sensor, so in the map they would hold the
+/// pose back.
 bool Odometry::IsFarFromTheLastInMap() const {
   const Pose moved = entered_.Inverse() * pose_;
   return moved.position.norm() >= kMapStep * settings_.voxel_size_m || Angle(moved) >= kMapTurn;
@@ -240,8 +251,8 @@ void Odometry::StartMap(const Surface& fine) {
   lost_scans_ = fitting_scans_ = 0;
 }
 
-/// Aligns to a coarse map: the motion is unknown, so a car may have left the reach of the fine
-/// map's cubes.
+/// Estimates the motion between the first two scans by alignment to a coarse map. The motion is not
+/// known yet, so a car may have moved farther than a search in the fine map finds.
 Pose Odometry::GuessFirstMotion(const Points& points) const {
   const double size = kFirstGrid * settings_.voxel_size_m;
   LocalMap coarse({size, settings_.max_range_m});
@@ -250,15 +261,16 @@ Pose Odometry::GuessFirstMotion(const Points& points) const {
       .pose;
 }
 
-/// Straightens the first scan by the motion to the second one. A skewed first scan would bend the
-/// map for ever.
+/// Corrects the first scan of the map for the motion of the sensor, which follows from the second
+/// scan. An uncorrected first scan would distort the map for good.
 void Odometry::StraightenFirstScan(Duration duration, const TimedPoints& second, Time middle) {
   const Duration gap = middle - *last_time_;
   Pose found = GuessFirstMotion(SelectPoints(second, StateAt(middle), middle, duration).points);
   for (int round = 0; round < kFirstRounds; ++round) {
     velocity_ = Log(pose_.Inverse() * found) / Seconds(gap);
     StartMap(SelectPoints(*first_scan_, StateAt(*last_time_), *last_time_, duration));
-    // The same velocity straightens both scans, which improves the next estimate of it.
+    // Both scans are corrected with the new velocity, which improves the next estimate of the
+    // velocity.
     const Points points = ThinOut(SelectPoints(second, StateAt(middle), middle, duration)).points;
     found = Align(points, &map_, found, settings_.voxel_size_m, kKernel * settings_.voxel_size_m,
                   settings_.registration)
@@ -292,7 +304,7 @@ Estimate Odometry::Begin(const TimedPoints& scan, const Surface& fine) {
   estimate.map_restarted = last_time_.has_value();
   StartMap(fine);
   confidence_.ForgetVelocity();
-  // A known velocity has already straightened the scan.
+  // If the velocity was known, the scan has been corrected with it already.
   const bool known = !last_time_ && settings_.start_velocity;
   if (known) {
     confidence_.SetVelocityKnown();
@@ -302,7 +314,8 @@ Estimate Odometry::Begin(const TimedPoints& scan, const Surface& fine) {
   return estimate;
 }
 
-/// Searches with the widest reach if the scan does not fit within the usual one.
+/// Aligns the scan. If it does not fit with the usual search distance, searches again with the
+/// largest search distance.
 Alignment Odometry::AlignFrom(const Pose& guess, const TimedPoints& scan, const Surface& fine) {
   const Surface aligned = ThinOut(fine);
   const RegistrationSettings settings = SettingsFor(scan, guess);
@@ -327,10 +340,11 @@ bool Odometry::ShowsThePlace(const Alignment& found, const Pose& guess) const {
   return found.standing_share >= kLeastOfUsual * KnownView(guess) * usual_standing_share_;
 }
 
-/// A scan fits if enough of its points fit and a vehicle can move as the pose says.
+/// Returns true if enough points of the scan fit, and if a vehicle can have moved to the found
+/// pose.
 bool Odometry::Fits(const Alignment& found, const Pose& guess, Duration gap) const {
   if (found.inlier_share < kLeastInliers) return false;
-  if (fitting_scans_ == 0) return true;  // the first motion has no limit
+  if (fitting_scans_ == 0) return true;  // the first motion is not limited
   if (!ShowsThePlace(found, guess)) return false;
   const Pose correction = guess.Inverse() * found.pose;
   const double square = std::pow(Seconds(gap + lost_for_), 2);
@@ -387,13 +401,13 @@ void Odometry::Follow(const Alignment& found, const Moving& predicted, Time midd
   map_.Forget(pose_.position);
 }
 
-/// Counts a lost scan. Begins a new map after kLostForGood of them, or at once if the map is not
-/// trusted yet.
+/// Handles a scan that does not fit. Begins a new map after kLostForGood lost scans in a row, or at
+/// once if few scans have been aligned to the current map.
 void Odometry::Lose(const TimedPoints& scan, const Surface& fine, Estimate* estimate) {
   ++lost_scans_;
   const bool untried = fitting_scans_ < kTrustedMap;
   if ((!untried && lost_scans_ < kLostForGood) || fine.points.empty()) return;
-  velocity_.setZero();  // the old velocity led to the loss
+  velocity_.setZero();  // a wrong velocity may have caused the loss
   if (untried) estimate->tracking = Tracking::kStarted;
   estimate->map_restarted = true;
   StartMap(fine);

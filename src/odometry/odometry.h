@@ -15,85 +15,94 @@
 namespace lidar::odometry {
 
 struct OdometrySettings {
-  double max_range_m = 100;  // farther points are left out; also the radius of the map
-  double min_range_m = 1;    // nearer points belong to the vehicle
-  double voxel_size_m = 1;   // of the map
-  bool deskew = true;        // correct points for the motion since they were sampled
-  Pose start;                // of the first scan
-  /// Motion in a second at the first scan, in the sensor's frame. Unset: the first two scans show
-  /// it.
+  double max_range_m = 100;  // farther points are ignored; also the radius of the map
+  double min_range_m = 1;    // nearer points are ignored, because they belong to the vehicle
+  double voxel_size_m = 1;   // edge length of the cubes in the map
+  bool deskew = true;        // correct points for the motion of the sensor during the scan
+  Pose start;                // pose of the first scan
+  /// The velocity at the first scan (per second, in the sensor's frame). If it is not set, it is
+  /// computed from the first two scans.
   std::optional<Twist> start_velocity;
   RegistrationSettings registration;
 };
 
-/// A scan in the frame of the sensor.
+/// The points of a scan in the frame of the sensor.
 struct TimedPoints {
   Points points;
-  /// Time of each point relative to the scan's duration, 0 to 1. Empty: unknown.
+  /// The sampling time of each point as a fraction of the scan's duration, from 0 to 1. Empty if
+  /// not known.
   std::vector<float> phases;
-  /// Beam of each point, in any order of the beams. Empty: unknown.
+  /// The beam number of each point. Beams may be numbered in any order. Empty if not known.
   std::vector<std::uint16_t> rings;
   bool HasRings() const { return !rings.empty() && rings.size() == points.size(); }
 };
 
 enum class Tracking {
-  kStarted,  // the map begins here: at the first scan, after a gap, or after a map of few scans
+  // A map begins: with the first scan, after a gap, or because a map of few scans was lost.
+  kStarted,
   kTracking,
-  kDegenerate,  // the scene does not show the motion along a direction; there the velocity is kept
-  kLost,        // the scan does not fit the map; the pose is a prediction
+  // The scene does not constrain the motion in a direction. In this direction, the velocity is
+  // kept.
+  kDegenerate,
+  kLost,  // the scan does not fit the map; the pose is predicted
 };
 const char* ToString(Tracking tracking);
 
 struct Estimate {
-  Time time{};  // the middle of the scan, where an error of the velocity matters least
-  Pose pose;    // of the sensor at `time`, in the frame of OdometrySettings::start
+  Time time{};  // middle of the scan, where errors of the velocity matter least
+  Pose pose;    // pose of the sensor at `time`, in the frame of OdometrySettings::start
   Tracking tracking = Tracking::kStarted;
   double inlier_share = 0;
   int iterations = 0;
   bool turn_measured = false;  // a gyroscope measured the rotation
-  bool map_restarted = false;  // a new map begins here, and it is not the first map
-  /// Covariance of the error since the first scan: x, y, z [m], and turns about the map's axes
-  /// [rad].
+  bool map_restarted = false;  // a new map begins, which is not the first map
+  /// The covariance of the error relative to the first scan: x, y and z [m], and rotations about
+  /// the axes of the map [rad].
   Matrix6 covariance = Matrix6::Zero();
 };
 
-/// KISS-ICP (Vizzo et al., 2023): constant velocity, voxel grids, adaptive threshold, and robust
-/// ICP against a local map. In addition a prediction spans missing scans, and a scan that does not
-/// fit does not enter the map. Deterministic; one thread at a time may use it.
+/// Odometry by KISS-ICP (Vizzo et al., 2023): constant velocity, voxel grids, an adaptive
+/// threshold, and robust ICP against a local map. In addition, a prediction bridges missing scans,
+/// and a scan that does not fit is not added to the map. It is deterministic. Only one thread at a
+/// time may use it.
 class Odometry {
  public:
   explicit Odometry(const OdometrySettings& settings);
 
-  /// Takes a scan that began at `start` and took `duration`. Times must ascend: an earlier scan, or
-  /// a gap of more than kLongestGap, begins a new map at the last pose. Points that are not finite
-  /// or out of range are left out.
+  /// Processes a scan that began at `start` and took `duration`. Scans must be in the order of
+  /// time. An earlier scan, or a gap of more than kLongestGap, begins a new map at the last pose.
+  /// Points that are not finite or out of range are ignored.
   Estimate OnScan(Time start, Duration duration, const TimedPoints& scan);
-  /// Takes a sample of an IMU: angular velocity [rad/s] and specific force [m/s^2] in the sensor's
-  /// frame, with gravity and bias uncorrected. Samples may come before or after the scan of their
-  /// time. Samples that precede their scan straighten it and predict its pose.
+  /// Processes a sample of an IMU: the angular velocity [rad/s] and the specific force [m/s^2], in
+  /// the sensor's frame. Gravity and bias are not yet removed. Samples may arrive before or after
+  /// the scan of the same time. Samples that arrive before the scan correct its points and predict
+  /// its pose.
   void OnTurn(Time time, const Eigen::Vector3d& rate,
               const Eigen::Vector3d& force = Eigen::Vector3d::Zero()) {
     turns_.Add(time, rate, force);
   }
-  /// Predicts the pose at `t` by constant velocity, and by the IMU if it has samples.
+  /// Predicts the pose at `t`, from the IMU if it has samples, otherwise with constant velocity.
   Pose PredictAt(Time t) const { return StateAt(t).pose; }
 
   const LocalMap& map() const { return map_; }
-  /// Returns the thinned out points of the last scan, in the sensor's frame at its middle.
+  /// Returns the thinned out points of the last scan. They are in the sensor's frame in the middle
+  /// of the scan.
   const Points& last_scan() const { return last_scan_; }
   static constexpr Duration kLongestGap = std::chrono::seconds(5);
 
  private:
   RegistrationSettings SettingsFor(const TimedPoints& scan, const Pose& guess) const;
-  /// Predicts the state at `t` from the last scan's.
+  /// Predicts the state at `t` from the state at the last scan.
   Moving StateAt(Time t) const;
-  /// Moves the sensor from its state at `from`: by the IMU, or Glide() at constant velocity.
+  /// Moves the sensor from its state at `from` to the time `to`. Advance() uses the IMU if
+  /// possible, and Glide() assumes constant velocity.
   Moving Advance(const Moving& at, Time from, Time to) const;
   Moving Glide(const Moving& at, Time from, Time to) const;
-  /// Returns the gyroscope's turn if the gyroscope is trusted and has samples.
+  /// Returns the rotation that the gyroscope measured, or nothing if the gyroscope is not trusted
+  /// or has no samples.
   std::optional<Eigen::Quaterniond> KnownTurn(Time from, Time to) const;
   std::vector<Pose> SweepAround(const Moving& state, Time middle, Duration duration) const;
-  /// `state` is that in the middle of the scan.
+  /// `state` is the state of the sensor in the middle of the scan.
   Surface SelectPoints(const TimedPoints& scan, const Moving& state, Time middle,
                        Duration duration) const;
   Surface ThinOut(const Surface& fine) const;
@@ -102,13 +111,14 @@ class Odometry {
   void StartMap(const Surface& fine);
   Pose GuessFirstMotion(const Points& points) const;
   void StraightenFirstScan(Duration duration, const TimedPoints& second, Time middle);
-  /// Begin() takes the first scan of a map, and Match() aligns each later scan. Follow() takes a
-  /// scan that fits, and Lose() takes a scan that does not. Follow() and Lose() move the pose.
+  /// Begin() processes the first scan of a map, and Match() aligns each later scan. Match() calls
+  /// Follow() if the scan fits, and Lose() if it does not. Match() and Follow() set the pose.
   Estimate Begin(const TimedPoints& scan, const Surface& fine);
   Estimate Match(Time middle, const Moving& predicted, const TimedPoints& scan,
                  const Surface& fine);
   Alignment AlignFrom(const Pose& guess, const TimedPoints& scan, const Surface& fine);
-  /// Returns how much of the view at `pose` the last scan in the map also shows: 0 to 1.
+  /// Returns which fraction of the view at `pose` was also visible in the last scan in the map,
+  /// from 0 to 1.
   double KnownView(const Pose& pose) const;
   bool ShowsThePlace(const Alignment& found, const Pose& guess) const;
   bool Fits(const Alignment& found, const Pose& guess, Duration gap) const;
@@ -120,17 +130,17 @@ class Odometry {
   LocalMap map_;
   MotionThreshold threshold_;
   Pose pose_;
-  Pose entered_;                    // pose of the last scan that entered the map
+  Pose entered_;                    // pose of the last scan that was added to the map
   Twist velocity_ = Twist::Zero();  // per second, in the sensor's frame
   std::optional<Time> last_time_;
   Confidence confidence_;
   TurnHistory turns_;
   int lost_scans_ = 0;
-  Duration lost_for_{};    // time since the last fit, in which the velocity may have changed
-  int fitting_scans_ = 0;  // of this map, without its first scan
+  Duration lost_for_{};    // time since the last scan that fit
+  int fitting_scans_ = 0;  // number of scans aligned to this map
   double usual_standing_share_ = 0;
   Points last_scan_;
-  /// The scan that began the map. It is kept until the velocity that straightens it is known.
+  /// The first scan of the map. It is kept until the velocity is known that corrects its points.
   std::optional<TimedPoints> first_scan_;
 };
 

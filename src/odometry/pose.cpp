@@ -7,9 +7,11 @@
 namespace lidar::odometry {
 namespace {
 
-constexpr double kSmallAngle = 1e-6;  // [rad]: below it the series of sine and cosine are exact
+// The angle [rad] below which the first terms of the sine and cosine series are exact.
+constexpr double kSmallAngle = 1e-6;
 
-/// Left Jacobian of SO(3). It turns a constant body velocity into the displacement.
+/// Returns the left Jacobian of SO(3), which converts a constant velocity of a rotating body to the
+/// displacement of the body.
 Eigen::Matrix3d LeftJacobian(const Eigen::Vector3d& rotation) {
   const double angle = rotation.norm();
   const Eigen::Matrix3d skew = Skew(rotation);
@@ -42,7 +44,7 @@ Pose Exp(const Twist& twist) {
 }
 
 Twist Log(const Pose& pose) {
-  // Two quaternions have the same rotation; the sign picks the shorter turn.
+  // A quaternion and its negative are the same rotation. The sign selects the shorter rotation.
   const double sign = pose.rotation.w() < 0 ? -1 : 1;
   const Eigen::Vector3d axis = sign * pose.rotation.vec();
   const double sine = axis.norm();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Rigid motions, SE(3), and their logarithms.
+// Rigid motions in 3D, the group SE(3), and their logarithms.
 #pragma once
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -9,10 +9,11 @@ namespace lidar::odometry {
 
 using Points = std::vector<Eigen::Vector3d>;  // [m]
 
-/// A translation [m], then a rotation vector [rad].
+/// A translation [m] and a rotation vector [rad], in this order.
 using Twist = Eigen::Matrix<double, 6, 1>;
 
-/// Maps points of a body's frame to the frame in which the body is seen.
+/// The pose of a body in an outer frame. It converts points from the frame of the body to the outer
+/// frame.
 struct Pose {
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  // [m]
@@ -29,19 +30,20 @@ struct Pose {
   }
 };
 
-/// A moving sensor.
+/// The state of a moving sensor.
 struct Moving {
   Pose pose;
   Twist velocity = Twist::Zero();  // per second, in the sensor's frame
 };
 
-/// The motion at constant velocity for one unit of time; Sola et al., "A micro Lie theory", (172).
+/// Returns the motion during one unit of time at the constant velocity `twist`; Sola et al., "A
+/// micro Lie theory", (172).
 Pose Exp(const Twist& twist);
-/// Inverse of Exp(), for rotations below half a turn.
+/// Returns the inverse of Exp(), for rotations of less than half a turn.
 Twist Log(const Pose& pose);
-/// Angle of the rotation [rad], 0 to pi.
+/// Returns the angle of the rotation [rad], from 0 to pi.
 double Angle(const Pose& pose);
-/// Returns the matrix with Skew(v) * w = v x w.
+/// Returns the matrix M for which M * w is the cross product v x w.
 Eigen::Matrix3d Skew(const Eigen::Vector3d& v);
 
 }  // namespace lidar::odometry

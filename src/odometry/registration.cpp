@@ -8,19 +8,20 @@
 namespace lidar::odometry {
 namespace {
 
-constexpr std::size_t kLeastPairs = 20;  // fewer pairs give no pose
-/// Weight of the guess along a direction that the scene does not show. It exceeds the
-/// weight of all points together.
+constexpr std::size_t kLeastPairs = 20;  // with fewer pairs no pose is computed
+/// Weight of the prediction in a direction that the scene does not constrain. It exceeds the weight
+/// of all points together.
 constexpr double kHold = 1e6;
-/// Least error of a map [m], however small the residuals are.
+/// The least assumed error of a map [m], even if the residuals are smaller.
 constexpr double kLeastSpread = 0.01;
 
-/// The sums of one Gauss-Newton step, for a motion of the sensor in its own frame.
+/// The sums of one Gauss-Newton step. Its unknown is a motion of the sensor in the sensor's own
+/// frame.
 struct NormalEquations {
   Matrix6 lhs = Matrix6::Zero();
   Twist rhs = Twist::Zero();
   double weights = 0;
-  double squares = 0;  // of the weighted residuals
+  double squares = 0;  // sum of the weighted squared residuals
   std::size_t pairs = 0;
 
   template <class Jacobian, class Residual>
@@ -38,17 +39,18 @@ struct NormalEquations {
     squares += weight * other.squares;
     pairs += other.pairs;
   }
-  /// Part of the weight on each direction of a translation. The trace is 1 if all points lie on
-  /// surfaces.
+  /// Returns how the weight is distributed over the directions of a translation. The trace is 1 if
+  /// all neighbours have a surface.
   Eigen::Matrix3d Constraint() const { return lhs.topLeftCorner<3, 3>() / weights; }
 };
 
-/// Neighbours with a surface, and neighbours without one.
+/// The sums over neighbours with a surface and over neighbours without one.
 struct Neighbours {
   NormalEquations surfaces;
   NormalEquations points;
   std::size_t fitting = 0;
-  /// Sums of n n' over the normals of all points that have one, and of those that fit.
+  /// The sums of n n' over the normals n: of all points that have a normal, and of the points that
+  /// fit.
   Eigen::Matrix3d facing = Eigen::Matrix3d::Zero();
   Eigen::Matrix3d fitting_facing = Eigen::Matrix3d::Zero();
 };
@@ -74,7 +76,7 @@ Neighbours Linearise(const Surface& scan, LocalMap* map, const Pose& pose, doubl
     const auto nearest = map->FindNearest(there, reach_m);
     if (!nearest) continue;
     const Eigen::Vector3d residual = rotation.transpose() * (there - nearest->point);
-    // The residual's derivative is [I, -p^] in the sensor's frame.
+    // The derivative of the residual is [I, -p^], in the sensor's frame.
     jacobian.rightCols<3>() = -Skew(point);
     bool fits = false;
     Eigen::Matrix3d faces = own;
@@ -96,10 +98,11 @@ Neighbours Linearise(const Surface& scan, LocalMap* map, const Pose& pose, doubl
   return sums;
 }
 
-/// Returns the projection on the directions that the scene leaves free, in the sensor's frame.
+/// Returns the projection onto the directions that the scene does not constrain, in the sensor's
+/// frame.
 Eigen::Matrix3d FindUnobserved(const NormalEquations& sums, const RegistrationSettings& settings) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(sums.Constraint());
-  const Eigen::Vector3d& held = solver.eigenvalues();  // ascending
+  const Eigen::Vector3d& held = solver.eigenvalues();  // in ascending order
   Eigen::Matrix3d unobserved = Eigen::Matrix3d::Zero();
   for (Eigen::Index i = 0; i < 3; ++i) {
     const bool alone = i == 0 && held(0) < settings.least_balance * held(1);
@@ -109,8 +112,8 @@ Eigen::Matrix3d FindUnobserved(const NormalEquations& sums, const RegistrationSe
   return unobserved;
 }
 
-/// Returns true if surfaces hold each direction. The prediction then has little weight, because a
-/// turning car always leaves its predicted line.
+/// Returns true if surfaces constrain every direction. Then the prediction gets no weight, because
+/// a car that turns always deviates from its predicted path.
 bool AreEnough(const NormalEquations& surfaces, const RegistrationSettings& settings) {
   if (surfaces.pairs < kLeastPairs) return false;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(surfaces.Constraint(),
@@ -118,8 +121,8 @@ bool AreEnough(const NormalEquations& surfaces, const RegistrationSettings& sett
   return solver.eigenvalues()(0) >= settings.held_by_surfaces;
 }
 
-/// Returns the share of the `count` points that fit, without surfaces that face the best held
-/// direction, such as the ground.
+/// Returns the share of the `count` points that fit. Surfaces that face the best constrained
+/// direction, such as the ground, are not counted.
 double StandingShare(const Neighbours& found, std::size_t count) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(found.facing);
   const Eigen::Vector3d best = solver.eigenvectors().col(2);

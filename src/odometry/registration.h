@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Robust ICP: finds the pose at which a scan fits the map.
+// Finds the pose at which a scan fits the map, by robust ICP.
 #pragma once
 #include "src/odometry/confidence.h"
 #include "src/odometry/local_map.h"
@@ -9,63 +9,69 @@ namespace lidar::odometry {
 
 struct RegistrationSettings {
   int max_iterations = 100;
-  double converged = 5e-4;  // length of the last step [m and rad]
-  /// Weight of a neighbour without a surface if surfaces hold every direction. Neighbours with a
-  /// surface have weight 1. A neighbour without a surface is seldom the same spot.
+  double converged = 5e-4;  // stop after a step that is shorter than this [m and rad]
+  /// Weight of neighbours without a surface, if surfaces constrain every direction. Neighbours with
+  /// a surface have the weight 1. A neighbour without a surface is seldom the same spot as the
+  /// point.
   double spare_point_weight = 1;
-  /// Weight of a neighbour without a surface if surfaces leave a direction open.
+  /// Weight of neighbours without a surface, if surfaces do not constrain every direction.
   double point_weight = 1;
-  /// Weight of the rotation in the pull of a neighbour without a surface: distant wrong neighbours
-  /// would turn the sensor most.
+  /// Factor by which neighbours without a surface affect the rotation. It may be less than 1,
+  /// because wrong neighbours far away would rotate the sensor most.
   double point_turn = 1;
-  /// Surfaces hold a direction if at least this share of them faces it: 0 to 1.
+  /// Surfaces constrain a direction if at least this share of them faces the direction: 0 to 1.
   double held_by_surfaces = 0.04;
-  /// A direction is not observed if a smaller share of surfaces faces it.
+  /// A direction is not observed if a smaller share of the surfaces faces it.
   double least_constraint = 0.04;
-  /// The direction with the least share is not observed, either, if its share is below this part of
-  /// the second least, as along a tunnel.
+  /// The direction that the smallest share of surfaces faces is also not observed if this share is
+  /// less than this fraction of the second smallest. Along a tunnel, for example, it is not
+  /// observed.
   double least_balance = 0.3;
-  /// Greatest distance of a fitting point from its surface or neighbour. It does not depend on the
-  /// reach, so that a wide search does not make a scan fit.
+  /// The greatest distance at which a point fits its surface or its neighbour. It does not depend
+  /// on the search distance, because a wide search must not make a scan fit.
   double fit_m = 0.2;
 };
 
-/// Points of a scan in the sensor's frame, with the normals that the scan shows.
+/// Points of a scan in the sensor's frame, with the normals that were found in the scan.
 struct Surface {
   Points points;
-  Points normals;  // of the first points; the other points have no normal
+  Points normals;  // normals of the first points; all further points have none
 };
 
-/// The pose before the points are used.
+/// The predicted pose, before the scan is aligned.
 struct Prediction {
   Pose pose;
-  /// Information of the pose, as a motion of the sensor in its own frame.
+  /// The information of the pose, for a motion of the sensor in its own frame.
   Matrix6 information = Matrix6::Zero();
 };
 
 struct Alignment {
   Pose pose;
   double inlier_share = 0;  // share of the points that fit
-  /// The same share without the surfaces that face the best held direction: they are usually
-  /// ground, which fits at every place. Normals come from the scan, or else from the map.
+  /// The share of the points that fit, without surfaces that face the best constrained direction.
+  /// These surfaces are usually ground, which fits at any place. Normals come from the scan, or
+  /// else from the map.
   double standing_share = 0;
   int iterations = 0;
-  /// The scene does not show the motion along a direction; the guess is kept there.
+  /// True if the scene does not constrain the motion in a direction. There the predicted pose is
+  /// kept.
   bool degenerate = false;
-  /// Projection on the unobserved directions, in the sensor's frame.
+  /// The projection onto the directions that are not observed, in the sensor's frame.
   Eigen::Matrix3d unobserved = Eigen::Matrix3d::Zero();
-  /// Information of a motion of the sensor in its own frame, if the points' errors are independent.
+  /// The information of the pose, for a motion of the sensor in its own frame. It is computed as if
+  /// the errors of the points were independent.
   Matrix6 information = Matrix6::Zero();
 };
 
-/// Aligns the points of `scan` to `map`, from `guess`, as KISS-ICP does (Vizzo et al.,
-/// 2023, section III-D): neighbours within `reach_m`, residuals weighted by the Geman-McClure
-/// kernel of scale `kernel_m`. Unlike KISS-ICP, a surface of the map counts by the distance from
-/// the surface: a wall does not hold motion along it, and fewer iterations suffice. The prediction
-/// holds the pose along directions that the points hold weakly.
+/// Aligns the points of `scan` to `map`, starting at the predicted pose, as in KISS-ICP (Vizzo et
+/// al., 2023, section III-D). Neighbours are searched within `reach_m`, and residuals are weighted
+/// by a Geman-McClure kernel of scale `kernel_m`. Unlike in KISS-ICP, the residual of a neighbour
+/// with a surface is the distance from this surface. So a wall does not constrain the motion along
+/// the wall, and fewer iterations are needed. The prediction holds the pose in directions that the
+/// points hardly constrain.
 Alignment Align(const Surface& scan, LocalMap* map, const Prediction& prediction, double reach_m,
                 double kernel_m, const RegistrationSettings& settings);
-/// Aligns from a guess without a known error.
+/// Aligns points to the map. The error of `guess` is not known.
 inline Alignment Align(const Points& points, LocalMap* map, const Pose& guess, double reach_m,
                        double kernel_m, const RegistrationSettings& settings) {
   return Align({points, {}}, map, Prediction{guess, Matrix6::Zero()}, reach_m, kernel_m, settings);

@@ -7,28 +7,32 @@
 namespace lidar::odometry {
 namespace {
 
-constexpr int kBins = 1024;  // of azimuth, a power of two
-/// Baseline to each side: long enough for the noise of grass, and at least two degrees.
+constexpr int kBins = 1024;  // number of azimuth bins, a power of two
+/// The length to each side of a point over which returns are averaged. It is long enough to average
+/// the noise of grass, and covers at least two degrees.
 constexpr float kSide_m = 0.6F;
 constexpr float kLeastBins = 6;
 constexpr float kMostBins = 24;
-/// Bins to each side over which a point is averaged: more would round kerbs and window frames.
+/// Number of bins to each side over which the position of a point is averaged. More bins would
+/// round off kerbs and window frames.
 constexpr int kBesides = 3;
-constexpr std::size_t kSums = kBins + 1;  // of a ring
+constexpr std::size_t kSums = kBins + 1;  // number of partial sums in a ring
 constexpr float kBinsPerRadian = kBins / 6.2831853F;
-/// Least and greatest distance between rings, in sines of their elevation. Closer rings give noise,
-/// and more distant rings meet other surfaces.
+/// The least and the greatest distance between two rings, as a difference of the sines of their
+/// elevation. Closer rings give noisy normals. Rings that are farther apart may hit different
+/// surfaces.
 constexpr double kLeastStep = 0.02;
 constexpr double kLargestStep = 0.14;
 constexpr float kFarthest_m = 1e4F;
-/// A return may be this far from its plane: kRoughness_m for noise and grass, and kBend times the
-/// distance of the outer rings for curvature, but at most kMostRough_m.
+/// The greatest distance of a return from its plane. kRoughness_m allows for noise and grass. kBend
+/// times the distance of the outer rings allows for curvature. The sum is limited to kMostRough_m.
 constexpr float kRoughness_m = 0.05F;
 constexpr float kBend = 0.03F;
 constexpr float kMostRough_m = 0.2F;
-constexpr float kLeastSine = 0.3F;  // between the two directions of the plane
+// The least sine of the angle between the two directions that span a plane.
+constexpr float kLeastSine = 0.3F;
 
-/// Returns false for a missing return: NaN, the origin, or infinity.
+/// Returns false if `p` is a missing return: NaN, infinite, or the origin.
 bool IsReturn(const Eigen::Vector3f& p) {
   const float range = p.norm();
   return range > 0 && range < kFarthest_m;
@@ -93,7 +97,8 @@ void ScanNormals::SumUp(const std::vector<Eigen::Vector3f>& image) {
   }
 }
 
-/// Averages a ring's returns over some bins, which may wrap around the turn's end.
+/// Returns the mean of the ring's returns in `bins` bins, which may wrap around the end of the
+/// turn.
 ScanNormals::Side ScanNormals::MeanOf(int ring, int first_bin, int bins) const {
   const Eigen::Vector4d* sums = &sums_[static_cast<std::size_t>(ring) * kSums];
   const int first = first_bin & (kBins - 1);
@@ -104,7 +109,7 @@ ScanNormals::Side ScanNormals::MeanOf(int ring, int first_bin, int bins) const {
   return {(sum.head<3>() / sum.w()).cast<float>(), true};
 }
 
-/// Fits a plane to the returns of three rings, the lowest first, on both sides of `bin`.
+/// Fits a plane to the returns on both sides of `bin` in three rings. The lowest ring is the first.
 std::optional<Eigen::Vector3f> ScanNormals::FitPlane(const int (&rings)[3], int bin,
                                                      const Eigen::Vector3f& point) const {
   const int bins =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Computes the normals that a single scan shows, from the beams around each point.
+// Computes surface normals from a single scan, with the beams above and below each point.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -9,34 +9,35 @@
 
 namespace lidar::odometry {
 
-/// A beam meets the ground in a circle, which moves with the sensor. In a map of points alone the
-/// circle is an edge that holds the pose back. The beams above and below show that it lies on a
-/// plane.
+/// Finds the normals of a scan. A beam meets the ground in a circle, which moves with the sensor.
+/// In a map that has only points, this circle looks like an edge and holds the pose back. With the
+/// beams above and below, the circle is recognised as a part of a plane.
 class ScanNormals {
  public:
-  /// `rings` has the beam of each point, in any order of the beams. Only the constructor reads
-  /// `points` and `rings`. Points that are not finite have no normal; without rings no point has
-  /// one.
+  /// `rings` has the beam number of each point. Beams may be numbered in any order. `points` and
+  /// `rings` are used in the constructor only. Points that are not finite have no normal. If
+  /// `rings` is empty, no point has a normal.
   ScanNormals(const Points& points, const std::vector<std::uint16_t>& rings);
 
   struct Surface {
     Eigen::Vector3d point;
-    /// Has unit length and points to the sensor. It is zero if the point's neighbours lie on no
-    /// plane.
+    /// A unit vector that points towards the sensor. It is zero if the returns around the point do
+    /// not lie on a plane.
     Eigen::Vector3d normal;
   };
-  /// Moves a point along its normal to the mean of its ring nearby. Returns of grass lie on the
-  /// cone of their beam, the nearest ones highest; a map of unmoved returns would be low at its
-  /// front edge.
+  /// Returns the normal at a point, and the point moved along this normal to the mean of the
+  /// returns around it in its ring. Returns of grass lie on the cone of their beam, and the nearest
+  /// of them are the highest. If they were not moved, a map of them would be too low at its front
+  /// edge.
   Surface At(const Eigen::Vector3d& point, std::uint16_t ring) const;
 
-  static constexpr std::size_t kMaxRings = 1024;  // points of further rings are left out
+  static constexpr std::size_t kMaxRings = 1024;  // points of further rings are ignored
 
  private:
   struct Ring {
     bool seen = false;
     double height = 0;  // sine of the elevation
-    int above = -1;     // next ring above with enough baseline; -1: none
+    int above = -1;     // next ring above with enough distance; -1: none
     int below = -1;
   };
   struct Side {
@@ -50,7 +51,8 @@ class ScanNormals {
                                           const Eigen::Vector3f& point) const;
 
   std::vector<Ring> rings_;
-  /// Per ring and bin: the sum of the returns before the bin, and in the last number their count.
+  /// Partial sums for each ring and bin: the sum of all returns before the bin, and their number as
+  /// the last component.
   std::vector<Eigen::Vector4d> sums_;
 };
 

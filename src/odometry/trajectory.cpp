@@ -23,8 +23,8 @@ struct Row {
 
 bool IsSpace(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 
-/// Reads the numbers of a line. Returns false for a word that is no finite number, and for too many
-/// words.
+/// Reads the numbers of a line. Returns false if a word is not a finite number, or if there are too
+/// many words.
 bool ParseRow(const std::string& line, Row* row) {
   const char* at = line.data();
   const char* const end = at + line.size();
@@ -40,7 +40,8 @@ bool ParseRow(const std::string& line, Row* row) {
   }
 }
 
-/// Reads seconds and nanoseconds apart: a double cannot hold a Unix time in nanoseconds.
+/// Reads a time. Seconds and fraction are read separately, because a double cannot represent a Unix
+/// time in nanoseconds.
 bool ParseTime(const std::string& line, Time* time) {
   const auto begin = line.find_first_not_of(" \t");
   const auto end = line.find_first_of(" \t", begin);
@@ -54,7 +55,7 @@ bool ParseTime(const std::string& line, Time* time) {
     const std::string digits = "0" + std::string(next);
     std::from_chars(digits.data(), digits.data() + digits.size(), fraction);
   } else if (*next != '\0') {
-    double whole = 0;  // NumPy writes 1.7e9
+    double whole = 0;  // NumPy writes times such as 1.7e9
     std::from_chars(word.data(), word.data() + word.size(), whole);
     if (std::abs(whole) > 9e9) return false;
     *time = Time{} + FromSeconds(whole);
@@ -66,7 +67,7 @@ bool ParseTime(const std::string& line, Time* time) {
   return true;
 }
 
-/// Reads the columns of a TUM file from tx on.
+/// Reads the columns of a TUM file, starting with tx.
 bool ToPose(const double* v, Pose* pose) {
   pose->position = {v[0], v[1], v[2]};
   const Eigen::Quaterniond q(v[6], v[3], v[4], v[5]);
@@ -84,8 +85,8 @@ bool ToPose(const Row& row, Pose* pose) {
   return (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).norm() < 0.01;
 }
 
-/// Sets the C locale, before the first output only: a new locale flushes the stream, and a stream
-/// whose flush fails, as on a full disk, cannot be closed.
+/// Sets the C locale of the stream, but only before the first output. Setting a locale flushes the
+/// stream, and if that fails, for example because the disk is full, the stream cannot be closed.
 void WriteAsInC(std::ostream& out) {
   if (out.getloc() != std::locale::classic()) out.imbue(std::locale::classic());
 }

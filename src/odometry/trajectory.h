@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Poses over time, and the text files for them.
+// Poses over time, and text files with poses.
 #pragma once
 #include <istream>
 #include <optional>
@@ -16,26 +16,26 @@ struct StampedPose {
   Time time{};
   Pose pose;
 };
-using Trajectory = std::vector<StampedPose>;  // ascending in time
+using Trajectory = std::vector<StampedPose>;  // sorted by time
 
 /// Writes a line of a TUM file: "seconds tx ty tz qx qy qz qw".
 void WriteTumLine(std::ostream& out, const StampedPose& pose);
-/// Writes a line of a KITTI file: the first three rows of the 4x4 matrix, without a time.
+/// Writes a line of a KITTI file: the first three rows of the 4x4 matrix. It has no time.
 void WriteKittiLine(std::ostream& out, const Pose& pose);
 
-/// Reads "tx ty tz qx qy qz qw"; returns nothing for other text.
+/// Parses "tx ty tz qx qy qz qw". Returns nothing for any other text.
 std::optional<Pose> ParsePose(const std::string& text);
-/// Reads "vx vy vz wx wy wz"; returns nothing for other text.
+/// Parses "vx vy vz wx wy wz". Returns nothing for any other text.
 std::optional<Twist> ParseTwist(const std::string& text);
 
-/// Reads a TUM file (eight columns) or a KITTI file (twelve columns, poses `kitti_period` apart).
-/// Lines that begin with # are comments. After an error the result is empty and `error` names the
-/// wrong line. A last line without a line end is dropped: its writer may have stopped in the
-/// middle.
+/// Reads a TUM file (eight columns) or a KITTI file (twelve columns, with poses at intervals of
+/// `kitti_period`). Lines that begin with # are comments. After an error the result is empty, and
+/// `error` names the line. If the last line has no line end and is incomplete, it is ignored,
+/// because its writer may have been stopped.
 Trajectory ReadTrajectory(std::istream& in, Duration kitti_period, std::string* error);
 
-/// Interpolates the pose at `t`. Before the first pose it returns the first, after the last the
-/// last. The trajectory must not be empty.
+/// Returns the pose at `t`, interpolated between poses. Returns the first pose for an earlier time,
+/// and the last pose for a later time. The trajectory must not be empty.
 Pose InterpolateAt(const Trajectory& trajectory, Time t);
 
 }  // namespace lidar::odometry

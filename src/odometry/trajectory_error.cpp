@@ -14,7 +14,7 @@ constexpr double kLongestStretch = 800;
 
 struct Pairs {
   Trajectory truth;
-  Trajectory estimate;  // of the same length and times as `truth`
+  Trajectory estimate;  // has the same length and times as `truth`
 };
 
 Pairs Match(const Trajectory& truth, const Trajectory& estimate) {
@@ -43,7 +43,7 @@ void MeasureAte(const Pairs& pairs, TrajectoryError* error) {
   error->ate_max_m = std::sqrt(off.colwise().squaredNorm().maxCoeff());
 }
 
-/// Returns the error of `estimate` in the motion from i to j.
+/// Returns the error in the estimated motion from pose i to pose j.
 Pose MotionError(const Pairs& pairs, std::size_t i, std::size_t j) {
   const Pose was = pairs.truth[i].pose.Inverse() * pairs.truth[j].pose;
   const Pose seen = pairs.estimate[i].pose.Inverse() * pairs.estimate[j].pose;
@@ -87,8 +87,9 @@ void MeasureDrift(const Pairs& pairs, TrajectoryError* error) {
   if (count > 0) error->drift = sum / static_cast<double>(count);
 }
 
-/// Returns the error of the last position after the first second of both trajectories is aligned. A
-/// single pose would not fix the direction well enough for a long path.
+/// Returns the error of the last position, after the first second of both trajectories has been
+/// aligned. A single pose is not enough, because a small error of its direction is a large error at
+/// the end of a long path.
 double EndError(const Pairs& pairs) {
   Eigen::Vector4d rotation = Eigen::Vector4d::Zero();
   Eigen::Vector3d truth = Eigen::Vector3d::Zero();

@@ -7,32 +7,33 @@
 namespace lidar::odometry {
 namespace {
 
-/// A longer pause between samples hides how the sensor turned. IMUs give at least 100 samples a
-/// second. The last sample holds as long, because samples of the last slice may still be under way.
+/// The longest time between two samples. A longer gap hides how the sensor turned; IMUs give at
+/// least 100 samples/s. The last sample is valid for the same time, because the next samples may
+/// not have arrived yet.
 constexpr Duration kLongestStep = std::chrono::milliseconds(50);
 constexpr Duration kNewClock = std::chrono::seconds(1);
-constexpr double kMostRate = 50;  // [rad/s]: vehicles turn slower
+constexpr double kMostRate = 50;  // no vehicle turns faster [rad/s]
 constexpr double kMostBias = 0.2;
-/// Least weight of a scan's error in the bias. The first scans weigh more. The initial bias of zero
-/// counts as much as kOffsetScans scans.
+/// The least weight of a scan in the estimate of the bias; the first scans have more weight. The
+/// initial bias of zero has as much weight as kOffsetScans scans.
 constexpr double kBiasShare = 0.05;
 constexpr int kOffsetScans = 3;
 constexpr double kMemory = 0.9;
-/// Error of the rotation that an alignment finds [rad].
+/// The error of a rotation that is found by alignment [rad].
 constexpr double kNoise = 0.003;
-constexpr int kLeastTaught = 5;  // scans
-/// Least weight of a scan in the force at rest. The first scans weigh more: their mean is the first
-/// estimate.
+constexpr int kLeastTaught = 5;  // number of scans
+/// The least weight of a scan in the estimate of the force at rest. The first scans have more
+/// weight, so that their mean is the first estimate.
 constexpr double kRestShare = 0.02;
-constexpr int kLeastForcesTaught = 10;  // scans
-/// Greatest squared error of trusted forces, relative to that of the mean velocity. Forces may err
-/// more, because scans straightened without forces have errors. Forces along reversed axes have
-/// four times the error.
+constexpr int kLeastForcesTaught = 10;  // number of scans
+/// The greatest squared error of the path that trusted forces predict, relative to the squared
+/// error of the path at the mean velocity. The limit exceeds 1, because scans have errors if they
+/// were corrected without forces. Forces with reversed axes have four times the error.
 constexpr double kMostForceError = 2;
-/// Half of gravity [m/s^2]. An IMU without an accelerometer, or with other units, shows less at
-/// rest.
+/// Half of gravity [m/s^2]. At rest, an IMU without an accelerometer or with other units shows less
+/// than this.
 constexpr double kLeastRest = 5;
-constexpr double kMostForce = 1000;  // [m/s^2]: that of a crash
+constexpr double kMostForce = 1000;  // force in a crash [m/s^2]
 
 Eigen::Vector3d LogOf(const Eigen::Quaterniond& turn) {
   return Log({turn, Eigen::Vector3d::Zero()}).tail<3>();
@@ -111,7 +112,8 @@ void TurnHistory::Teach(Time from, Time to, const Eigen::Quaterniond& found,
   if (bias_.norm() > kMostBias) bias_ *= kMostBias / bias_.norm();
 }
 
-/// Returns the state after a span. Subtracts the force at rest, which only balances gravity.
+/// Returns the state after the motion `span`. The force at rest is subtracted, because it only
+/// balances gravity.
 Moving TurnHistory::After(const Moving& at, const Span& span, double seconds) const {
   const Eigen::Vector3d rest = at.pose.rotation.conjugate() * rest_;
   const Eigen::Vector3d start = at.velocity.head<3>();
@@ -127,7 +129,7 @@ std::optional<Moving> TurnHistory::Move(const Moving& at, Time from, Time to) co
   auto span = SpanBetween(std::min(from, to), std::max(from, to));
   if (!span) return std::nullopt;
   if (to >= from) return After(at, *span, Seconds(to - from));
-  // The same span, seen from its end.
+  // Reverses the span: the motion from its end to its start.
   const double seconds = Seconds(from - to);
   const Eigen::Quaterniond back = span->turn.conjugate();
   span->way = back * (span->velocity * seconds - span->way);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Cubes of space: finds the cube of a point, and thins out points to one a cube.
+// Divides space into cubes: finds the cube of a point, and keeps only one point in each cube.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 
 namespace lidar::odometry {
 
-/// Index of a cube along each axis.
+/// The index of a cube along each axis.
 struct Voxel {
   std::int32_t x = 0;
   std::int32_t y = 0;
@@ -19,7 +19,7 @@ struct Voxel {
 };
 
 struct VoxelHash {
-  /// The three primes of Teschner et al., "Optimized Spatial Hashing", 2003.
+  /// Uses the three primes of Teschner et al., "Optimized Spatial Hashing", 2003.
   std::size_t operator()(const Voxel& v) const {
     return static_cast<std::uint32_t>(v.x) * std::size_t{73856093} ^
            static_cast<std::uint32_t>(v.y) * std::size_t{19349663} ^
@@ -27,8 +27,8 @@ struct VoxelHash {
   }
 };
 
-/// Returns the cube of edge `size_m` that holds `point`. Points beyond 2^31 cubes are in the last
-/// cube.
+/// Returns the cube that contains `point`. `size_m` is the edge length of a cube. Points beyond
+/// 2^31 cubes count as in the outermost cube.
 inline Voxel VoxelOf(const Eigen::Vector3d& point, double size_m) {
   const auto index = [size_m](double c) {
     return static_cast<std::int32_t>(
@@ -37,9 +37,9 @@ inline Voxel VoxelOf(const Eigen::Vector3d& point, double size_m) {
   return {index(point.x()), index(point.y()), index(point.z())};
 }
 
-/// Returns the first point of each cube, in the order of `points`.
+/// Returns the first point in each cube, in the order of `points`.
 Points Downsample(const Points& points, double size_m);
-/// Returns the indices of those points.
+/// Returns the indices of the points that Downsample() returns.
 std::vector<std::size_t> FirstOfEachCube(const Points& points, double size_m);
 
 }  // namespace lidar::odometry
