@@ -87,14 +87,14 @@ const std::array<Stat<Counters>, 14> kStats = {{
     {"orientation-deviation", &Counters::orientation_deviation},
 }};
 
-/// The state of a stream. Only the streaming thread uses it.
+/// The state of a stream. It is used by the streaming thread only.
 struct Stream {
   std::optional<CloudInfo> info;
   RefusedCaps refused;
   ScanCollector collector;
-  GstClockTime newest_pts = GST_CLOCK_TIME_NONE;  // of the buffers that the collector took
+  GstClockTime newest_pts = GST_CLOCK_TIME_NONE;  // PTS of the newest buffer in the collector
   std::unique_ptr<Odometry> odometry;
-  std::unique_ptr<LoopThread> loops;  // null: no loops are closed
+  std::unique_ptr<LoopThread> loops;  // null if loops are not closed
   std::size_t loops_taken = 0;
   Pose map_from_odometry;
   Estimate last;
@@ -169,7 +169,7 @@ static std::optional<Time> SampledAt(GstBuffer* buffer) {
   const GstClockTime captured = gst_lidar_buffer_get_capture_time(buffer);
   const GstClockTime at = GST_CLOCK_TIME_IS_VALID(captured) ? captured : GST_BUFFER_PTS(buffer);
   if (!GST_CLOCK_TIME_IS_VALID(at)) return std::nullopt;
-  // Sums and differences of times below this bound do not overflow.
+  // Up to this limit, sums and differences of times do not overflow.
   return Time{} + Duration{static_cast<std::int64_t>(MIN(at, GstClockTime{G_MAXINT64 / 2}))};
 }
 
@@ -190,7 +190,7 @@ static void CountScan(State* state, const Estimate& estimate, GstClockTime time)
   c.covariance = lidar::gst::CovarianceOf(estimate);
 }
 
-/// Warns when tracking begins to fail, once until tracking works again.
+/// Posts a warning if tracking has failed, but only once until tracking works again.
 static void WarnIfLost(GstLidarOdometry* self, const Estimate& estimate) {
   Stream& stream = self->state->stream;
   const bool lost = estimate.tracking == Tracking::kLost;
@@ -218,7 +218,7 @@ static void WriteTrajectory(GstLidarOdometry* self, const Estimate& estimate) {
                       ("The trajectory can no longer be written; the stream goes on."), (nullptr));
 }
 
-/// Reads the drift that the loops have shown so far.
+/// Takes the results of the loop search: the correction of the drift, and counters.
 static void TakeLoops(GstLidarOdometry* self) {
   State& state = *self->state;
   const LoopThread::Progress progress = state.stream.loops->progress();
@@ -243,7 +243,8 @@ static void SearchLoops(GstLidarOdometry* self, const Estimate& estimate) {
   TakeLoops(self);
 }
 
-/// Aligns the open scan, if there is one. Its pose has the timestamp of its last buffer.
+/// Aligns the open scan, if there is one, and pushes its pose. The pose has the timestamp of the
+/// scan's last buffer.
 static void FinishScan(GstLidarOdometry* self) {
   State& state = *self->state;
   Stream& stream = state.stream;
@@ -267,7 +268,8 @@ static void FinishScan(GstLidarOdometry* self) {
   PushMap(GST_ELEMENT(self), stream.map_from_odometry, estimate.time, stream.newest_pts);
 }
 
-/// Waits until all scans were searched for loops, and pushes the corrected pose of the last scan.
+/// Waits until all scans have been searched for loops. Then pushes the corrected pose of the last
+/// scan.
 static void FinishLoops(GstLidarOdometry* self) {
   Stream& stream = self->state->stream;
   if (!stream.loops) return;
@@ -277,7 +279,8 @@ static void FinishLoops(GstLidarOdometry* self) {
   PushMap(GST_ELEMENT(self), stream.map_from_odometry, stream.last.time, stream.newest_pts);
 }
 
-/// Adds the buffer to a scan. Returns false if it cannot be mapped or does not hold whole points.
+/// Adds the buffer to the open scan. Returns false if the buffer cannot be mapped, or if its size
+/// is not a multiple of the size of a point.
 static bool AddBuffer(GstLidarOdometry* self, GstBuffer* buffer, const GstLidarSlice& slice,
                       Time at) {
   Stream& stream = self->state->stream;
@@ -307,8 +310,7 @@ static GstFlowReturn TransformIp(GstBaseTransform* base, GstBuffer* buffer) {
     GST_WARNING_OBJECT(self, "the size of a buffer does not match its caps: it gets no pose");
     return GST_FLOW_OK;
   }
-  // The scan is aligned only when its last slice is there: earlier slices leave with a predicted
-  // pose.
+  // A scan is aligned when its last slice has arrived. So earlier slices get a predicted pose.
   if (stream.collector.complete()) FinishScan(self);
   const GstLidarPose pose = ToMeta(stream.odometry->PredictAt(*at), stream.last);
   gst_lidar_buffer_set_pose(buffer, &pose);
@@ -335,7 +337,7 @@ static gboolean SinkEvent(GstBaseTransform* base, GstEvent* event) {
   Stream& stream = self->state->stream;
   switch (GST_EVENT_TYPE(event)) {
     case GST_EVENT_CAPS:
-      break;  // the pad of poses has its own segment and caps
+      break;  // the pad odometry has its own segment and caps
     case GST_EVENT_EOS:
       FinishScan(self);
       FinishLoops(self);

@@ -9,7 +9,8 @@
 namespace lidar::gst {
 namespace {
 
-/// Reads the rotation of `imu-to-sensor`, a row-major transform; false if that is not a rotation.
+/// Reads the rotation of the caps field `imu-to-sensor`, a row-major transform. Returns false if it
+/// is not a rotation.
 bool ReadRotation(const GstStructure* caps, Eigen::Matrix3d* rotation) {
   const GValue* list = gst_structure_get_value(caps, "imu-to-sensor");
   rotation->setIdentity();

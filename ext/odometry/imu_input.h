@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Passes samples from the thread of an IMU to the thread of the scans.
+// Passes samples of an IMU from the thread that receives them to the thread that aligns scans.
 #pragma once
 #include <gst/gst.h>
 
@@ -12,26 +12,28 @@
 
 namespace lidar::gst {
 
-/// The sample of an IMU in the sensor's frame.
+/// A sample of an IMU in the sensor's frame.
 struct MotionSample {
   Time time{};
   Eigen::Vector3d rate;   // [rad/s]
   Eigen::Vector3d force;  // [m/s^2]
 };
 
-/// The threads of the IMU and of the scans may use an object at the same time.
+/// A queue of samples. The thread of the IMU and the thread of the scans may use it at the same
+/// time.
 class ImuInput {
  public:
-  /// Sets the layout of the samples that follow, and the rotation from the IMU to the sensor.
-  /// Returns false if the layout is not that of ouster_src.
+  /// Sets the layout of later samples, and the rotation from the IMU to the sensor. Returns false
+  /// if the layout differs from that of ouster_src.
   bool SetCaps(const GstCaps* caps);
-  /// Returns false if `samples` ends within a sample, or if there are no caps yet.
+  /// Adds samples. Returns false if `samples` does not end at the end of a sample, or if SetCaps()
+  /// has not succeeded yet.
   bool Add(ByteView samples);
-  /// Returns the samples since the last call.
+  /// Returns and removes all samples that were added since the last call.
   std::vector<MotionSample> Take();
   void Clear();
 
-  static constexpr std::size_t kMostSamples = 8192;  // the oldest samples beyond it are dropped
+  static constexpr std::size_t kMostSamples = 8192;  // if there are more, the oldest are dropped
 
  private:
   std::mutex mutex_;

@@ -41,7 +41,7 @@ LoopThread::Progress LoopThread::progress() const {
   return progress_;
 }
 
-/// The caller holds the mutex.
+/// Copies the results of the loop closer to progress_. The caller must hold the mutex.
 void LoopThread::Publish() {
   progress_.map_from_odometry = closer_.MapFromOdometry();
   progress_.solved = closer_.solved();

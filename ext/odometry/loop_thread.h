@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Searches scans for loops in a thread of its own.
+// Searches scans for loops in a separate thread.
 #pragma once
 #include <condition_variable>
 #include <deque>
@@ -10,7 +10,7 @@
 
 namespace lidar::gst {
 
-/// Any thread may call it.
+/// A loop closer with a thread and a queue of scans. Any thread may call the methods.
 class LoopThread {
  public:
   explicit LoopThread(const slam::LoopSettings& settings);
@@ -18,16 +18,16 @@ class LoopThread {
   LoopThread(const LoopThread&) = delete;
   LoopThread& operator=(const LoopThread&) = delete;
 
-  /// Queues a scan, in the sensor's frame, with its pose from the odometry. Returns at once. Drops
-  /// the scan if kMostWaiting others wait.
+  /// Adds a scan to the queue and returns at once. `points` are in the sensor's frame, and `pose`
+  /// comes from the odometry. If kMostWaiting scans are waiting already, the scan is dropped.
   void AddScan(const odometry::StampedPose& pose, const odometry::Points& points);
-  /// Returns when all scans were searched and the last local map has ended.
+  /// Waits until all scans have been searched, and ends the last local map.
   void Finish();
 
   struct Progress {
     odometry::Pose map_from_odometry;
-    std::size_t solved = 0;  // number of times that the pose graph was solved
-    std::size_t loops = 0;   // number of loops between the local maps that are kept
+    std::size_t solved = 0;  // how many times the pose graph was solved
+    std::size_t loops = 0;   // number of loops between local maps that are still stored
     std::size_t local_maps = 0;
     std::size_t scans_dropped = 0;
   };
@@ -43,13 +43,14 @@ class LoopThread {
   void Run();
   void Publish();
 
-  mutable std::mutex mutex_;  // guards all members but closer_
+  mutable std::mutex mutex_;  // guards all members except closer_
   std::condition_variable changed_;
   std::deque<WaitingScan> waiting_;
   bool busy_ = false;
   bool stop_ = false;
   Progress progress_;
-  slam::LoopCloser closer_;  // used by the thread; by Finish() while the thread is idle
+  // Used by the thread, and by Finish() while the thread is idle.
+  slam::LoopCloser closer_;
   std::thread thread_;
 };
 

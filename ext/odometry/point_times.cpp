@@ -10,12 +10,13 @@
 namespace lidar::gst {
 namespace {
 
-// Shortest and longest time from the first to the last sample, in sweeps. Units differ by a factor
-// of 1000, so only one unit can fit.
+// The least and the greatest time from the first to the last sample, relative to the duration of a
+// sweep. Their quotient is less than 1000, the factor between two units, so at most one unit
+// matches.
 constexpr double kShortestPart = 0.01;
 constexpr double kLongestPart = 4;
 
-/// Returns the unit of time, or 0 if `span` fits a sweep in no unit.
+/// Returns the unit of the times, or 0 if no unit makes `span` about as long as a sweep.
 double UnitFor(double span, double sweep_s) {
   for (const double unit : {1.0, 1e-3, 1e-6, 1e-9}) {
     const double part = span * unit / sweep_s;
@@ -40,7 +41,7 @@ std::vector<float> SecondsOf(const PointField& field, const PointsInMemory& poin
   for (std::size_t i = 0; i < points.count; ++i) {
     const std::uint8_t* point = points.bytes + i * points.step;
     times[i] = ReadNumber(point + field.offset, field.type, false);
-    // Missing returns often have no valid time.
+    // Missing returns are skipped, because they often have no valid time.
     if (!IsReturn(PositionAt(point + points.xyz_offset))) continue;
     first = std::min(first, times[i]);
     last = std::max(last, times[i]);
@@ -49,7 +50,7 @@ std::vector<float> SecondsOf(const PointField& field, const PointsInMemory& poin
   if (!(unit > 0)) return {};
   std::vector<float> seconds(points.count);
   std::transform(times.begin(), times.end(), seconds.begin(), [&](double time) {
-    // The time of a missing return may be anything.
+    // The time of a missing return is limited, because it may be any number.
     return time > first ? static_cast<float>((std::min(time, last) - first) * unit) : 0.0F;
   });
   return seconds;

@@ -85,7 +85,7 @@ GstBuffer* PoseBuffer(const Estimate& e, GstClockTime pts) {
   cdr::Odometry told = ToOdometry(e.pose);
   told.pose_covariance = CovarianceOf(e);
   auto bytes = cdr::WritePose(told, static_cast<std::uint64_t>(e.tracking));
-  // WritePose() leaves out a covariance of 0, which the first scan has, so zeros are added here.
+  // WritePose() omits a covariance of 0, which the first scan has. So the zeros are added here.
   bytes.resize(kPoseSizeWithCovariance);
   return ToBuffer(bytes, e.time, pts);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Writes lidarodometry's poses as metas, messages and buffers.
+// Converts the poses of lidarodometry to metas, messages and buffers.
 #pragma once
 #include <gst/gst.h>
 
@@ -11,20 +11,21 @@
 namespace lidar::gst {
 
 Covariance CovarianceOf(const odometry::Estimate& estimate);
-/// Return the roots of the sums of the variances in three directions [m, rad].
+/// These functions return the square root of the sum of the variances in three directions [m, rad].
 double PositionDeviation(const odometry::Estimate& estimate);
 double OrientationDeviation(const odometry::Estimate& estimate);
-/// Returns the meta of `pose`, with the confidence of `last`, the scan before it.
+/// Returns the meta of `pose`. Tracking state and covariance are those of `last`, the last aligned
+/// scan.
 GstLidarPose ToMeta(const odometry::Pose& pose, const odometry::Estimate& last);
 
-/// Return the messages of a scan and of a loop. The caller owns them.
+/// These functions return the message of a scan and of a closed loop. The caller owns it.
 GstStructure* OdometryMessage(const odometry::Estimate& estimate);
 GstStructure* LoopMessage(const odometry::Pose& map_from_odometry, std::size_t loops);
 
-/// Return buffers in the layout of cdr::WritePose(). The caller owns them.
+/// These functions return buffers with the layout of cdr::WritePose(). The caller owns them.
 GstBuffer* PoseBuffer(const odometry::Estimate& estimate, GstClockTime pts);
 GstBuffer* MapBuffer(const odometry::Pose& map_from_odometry, Time time, GstClockTime pts);
-/// Returns the caps of MapBuffer(), with its frames.
+/// Returns the caps of buffers from MapBuffer(). They contain the names of the frames.
 CapsPtr MapCaps();
 
 }  // namespace lidar::gst

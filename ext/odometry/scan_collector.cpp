@@ -13,7 +13,7 @@ namespace {
 
 constexpr Duration kUsualScan = std::chrono::milliseconds(100);
 constexpr Duration kLongestScan = odometry::Odometry::kLongestGap;
-/// Bounds the memory for a stream of endless slices. Scans of real sensors are smaller.
+/// Limits the memory in case a scan does not end. Scans of real sensors are smaller.
 constexpr std::size_t kMaxPoints = std::size_t{1} << 22;
 
 }  // namespace
@@ -41,7 +41,7 @@ void ScanCollector::Open(const GstLidarSlice& slice, Time time) {
   scan_.duration = GST_CLOCK_TIME_IS_VALID(period)
                        ? std::min(Duration{static_cast<std::int64_t>(period)}, kLongestScan)
                        : kUsualScan;
-  // If the first slices are missing, the scan began before this slice.
+  // If the first slices are missing, the scan began before `time`.
   scan_.start = time - scan_.duration * slice.slice_index / slice.slice_count;
   scan_id_ = slice.scan_id;
   open_ = true;
@@ -71,8 +71,8 @@ void ScanCollector::Add(const GstLidarSlice& slice, Time time, const guint8* poi
   }
 }
 
-/// Returns the phases of all points in the scan, from the time field, else from the column, else
-/// from the slice. The result is empty if all three are missing.
+/// Returns the phases of the points in a slice. They come from the time field, or else from the
+/// columns, or else from the slice index. Returns an empty vector if all of these are missing.
 std::vector<float> ScanCollector::PhasesOf(const GstLidarSlice& slice,
                                            const PointsInMemory& points) const {
   const auto slices = static_cast<float>(slice.slice_count);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Collects the points of a scan from its slices, with their phases in the sweep.
+// Collects the points of a scan from its slices, with the phase of each point in the scan.
 #pragma once
 #include <optional>
 #include <vector>
@@ -11,28 +11,29 @@
 
 namespace lidar::gst {
 
-/// A scan; some of its slices may be missing.
+/// A collected scan. Some of its slices may be missing.
 struct CollectedScan {
   odometry::TimedPoints points;
   Time start{};
   Duration duration{};
 };
 
-/// Used by one thread at a time.
+/// Collects one scan after the other. Only one thread at a time may use it.
 class ScanCollector {
  public:
-  /// Sets the layout of the buffers that follow. Returns false if x, y and z are not packed F32.
+  /// Sets the layout of later buffers. Returns false if x, y and z are not adjacent F32.
   bool SetInfo(const CloudInfo& info);
 
-  /// Returns true if the open scan cannot take `slice`: the slice is of another scan, or the open
-  /// one has too many points.
+  /// Returns true if `slice` cannot be added to the open scan, because it belongs to another scan,
+  /// or because the open scan has too many points.
   bool BeginsNewScan(const GstLidarSlice& slice) const;
-  /// Adds a slice, whose first column was sampled at `time`, to the open scan or to a new one.
-  /// `size` bytes at `points` are whole points, and whole columns if the cloud is organised.
+  /// Adds a slice to the open scan, or begins a scan with it. Its first column was sampled at
+  /// `time`. The `size` bytes at `points` must be whole points, and whole columns if the cloud is
+  /// organised.
   void Add(const GstLidarSlice& slice, Time time, const guint8* points, gsize size);
-  /// Returns true if the last slice of the open scan is there.
+  /// Returns true if the open scan has its last slice.
   bool complete() const { return open_ && next_index_ >= count_; }
-  /// Takes the open scan, if there is one.
+  /// Returns the open scan and closes it. Returns nothing if no scan is open.
   std::optional<CollectedScan> Take();
 
  private:

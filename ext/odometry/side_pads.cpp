@@ -19,7 +19,8 @@ GstFlowReturn ImuChain(GstPad* pad, GstObject*, GstBuffer* buffer) {
   return GST_FLOW_OK;
 }
 
-/// Drops the events of the samples, because the element is their sink.
+/// Handles the caps of the IMU. All events are dropped here, because the element does not forward
+/// the samples.
 gboolean ImuEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   const EventPtr owned(event);
   if (GST_EVENT_TYPE(event) != GST_EVENT_CAPS) return TRUE;
@@ -33,7 +34,8 @@ gboolean ImuEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   return FALSE;
 }
 
-/// Copies a sticky event of the odometry's pad to the pad of the map, which may be requested later.
+/// Copies a sticky event from the pad odometry to the pad map, because the pad map may be requested
+/// after the event.
 gboolean CopyToMap(GstPad*, GstEvent** event, gpointer map) {
   const bool caps = GST_EVENT_TYPE(*event) == GST_EVENT_CAPS;
   const EventPtr copy(caps ? gst_event_new_caps(MapCaps().get()) : gst_event_ref(*event));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The pads of lidarodometry that are not for clouds: poses, the map's frame, and an IMU.
+// The pads of lidarodometry for other data than clouds: poses, the frame of the map, and an IMU.
 #pragma once
 #include <gst/gst.h>
 
@@ -8,16 +8,16 @@
 
 namespace lidar::gst {
 
-/// Adds a pad on request, `map` or `imu`. Returns null if the element has it already. `imu` takes
-/// the samples, and must outlive the pad.
+/// Adds the requested pad, `map` or `imu`. Returns null if the element has this pad already.
+/// Samples from the pad `imu` are added to the object `imu`, which must outlive the pad.
 GstPad* AddSidePad(GstElement* element, GstPadTemplate* pad_template, ImuInput* imu);
 
-/// These functions push only if their pad is linked.
+/// These functions push a buffer if their pad exists and is linked.
 void PushPose(GstElement* element, const odometry::Estimate& estimate, GstClockTime pts);
 void PushMap(GstElement* element, const odometry::Pose& map_from_odometry, Time time,
              GstClockTime pts);
-/// Pushes an event of the clouds to the pads of poses that exist. Each pad's own caps follow the
-/// start of the stream.
+/// Pushes an event from the stream of clouds to the pads odometry and map. A STREAM_START event is
+/// followed by the caps of the pad.
 void PushToPoses(GstElement* element, GstEvent* event);
 
 }  // namespace lidar::gst
