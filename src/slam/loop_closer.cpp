@@ -14,28 +14,31 @@ namespace {
 using odometry::Points;
 using odometry::Pose;
 
-/// Standard deviations of the motion between scans, and of closures.
+/// Standard deviations: of the motion between two scans, and of a closure.
 constexpr double kStep_m = 0.02;
 constexpr double kStep_rad = 0.002;
 constexpr double kClosure_m = 0.05;
 constexpr double kClosure_rad = 0.002;
-/// A closure is wrong if the solved poses contradict it by more than this.
+/// A closure is wrong if it differs from the solved poses by more than this.
 constexpr double kContradiction_m = 1.5;
 constexpr double kContradiction_rad = 0.05;
-/// A point of one map fits the other map if that has a point or surface within kSame_m. If it has
-/// no point within kOverlap_m, it counts as empty there.
+/// A point of one map coincides with the other map if the other map has a point or a surface within
+/// kSame_m. If the other map has no point within kOverlap_m, the point is outside the overlap of
+/// the maps.
 constexpr double kSame_m = 0.4;
 constexpr double kOverlap_m = 2;
 constexpr double kMapVoxel_m = 1;
 constexpr double kAlignedGrid_m = 1.2;
-constexpr std::size_t kThinAt = 400'000;  // number of points of the open map that start thinning
-/// A scan after less motion shows nothing new.
+constexpr std::size_t kThinAt = 400'000;  // the open map is thinned out if it has more points
+/// A scan is ignored if the sensor has moved less than this, because it shows nothing new.
 constexpr double kLeastStep_m = 0.5;
-/// Number of nearest maps that are searched for loops.
+/// The number of maps that are searched for loops, nearest first.
 constexpr std::size_t kMostCandidates = 8;
-constexpr std::size_t kFewestMaps = 3;  // the first, the last, and one that can be forgotten
+// The first map, the last map, and a map that can be forgotten.
+constexpr std::size_t kFewestMaps = 3;
 
-/// Share of one map's points that are near the other map, and share of these that fit it.
+/// The overlap is the share of a map's points that are near the other map. The fit is the share of
+/// these points that coincide with the other map.
 struct Shares {
   double overlap = 0;
   double fit = 0;
@@ -94,7 +97,8 @@ void LoopCloser::AddScan(const odometry::StampedPose& pose, const Points& points
 
 void LoopCloser::Finish() {
   if (open_.empty()) return;
-  // The middle scan, whose pose becomes the map's, is near both ends of the map.
+  // The pose of the middle scan becomes the pose of the map. The middle of the path is chosen,
+  // because it is not far from either end of the map.
   const double half = (open_.front().driven_m + open_.back().driven_m) / 2;
   const auto middle = std::lower_bound(open_.begin(), open_.end(), half,
                                        [](const Step& s, double at) { return s.driven_m < at; });
@@ -119,7 +123,8 @@ void LoopCloser::Finish() {
   while (maps_.size() > std::max(settings_.most_maps, kFewestMaps)) Forget(FindNearestToAnother());
 }
 
-/// Returns true if the odometry's drift allows a loop here, and `a` is not just before `b`.
+/// Returns true if the two maps may show the same place: the drift of the odometry may explain
+/// their distance, and the path between them is long enough for a loop.
 bool LoopCloser::MayBeTheSame(const LocalMap& a, const LocalMap& b) const {
   const double between = b.driven_m - a.driven_m;
   if (between < 3 * settings_.local_map_m) return false;
@@ -161,7 +166,7 @@ bool LoopCloser::TryToClose(std::size_t from, std::size_t to) {
   return true;
 }
 
-/// Solves for all local maps, and drops closures that contradict the others.
+/// Solves for the poses of all local maps. Removes closures that contradict the solved poses.
 void LoopCloser::Solve() {
   std::vector<Pose> poses;
   for (;;) {
@@ -184,8 +189,9 @@ void LoopCloser::Solve() {
   ++solved_;
 }
 
-/// Returns the later map of the nearest pair. The first map stays, because the path begins there,
-/// and the last, because the path continues from it.
+/// Finds the two maps that are nearest to each other, and returns the later of them. The first map
+/// is never returned, because the path begins in it. The last map is never returned, because the
+/// path continues from it.
 std::size_t LoopCloser::FindNearestToAnother() const {
   double least = std::numeric_limits<double>::max();
   std::size_t found = 1;
@@ -199,7 +205,7 @@ std::size_t LoopCloser::FindNearestToAnother() const {
   return found;
 }
 
-/// Moves the map's closures to the previous map.
+/// Removes a map, and moves its closures to the previous map.
 void LoopCloser::Forget(std::size_t forgotten) {
   const Pose to_previous = maps_[forgotten].solved.Inverse() * maps_[forgotten - 1].solved;
   maps_[forgotten + 1].scans += maps_[forgotten].scans;
@@ -209,7 +215,7 @@ void LoopCloser::Forget(std::size_t forgotten) {
     if (c.to >= forgotten) --c.to;
     if (c.from >= forgotten) --c.from;
   }
-  // Keeps the last closure between two maps.
+  // If two maps have several closures, only the last of them is kept.
   std::vector<Closure> kept;
   for (auto c = closures_.rbegin(); c != closures_.rend(); ++c) {
     const bool is_new = std::none_of(kept.begin(), kept.end(), [&](const Closure& k) {

@@ -16,15 +16,15 @@ using odometry::Pose;
 
 constexpr double kGroundCell = 2;     // [m]
 constexpr int kGroundCells = 64;      // number of cells along each side
-constexpr double kAboveGround = 0.7;  // greatest height of ground [m]
-constexpr float kMostDense = 8;       // limit of a cell's count; walls exceed it
+constexpr double kAboveGround = 0.7;  // points that are higher are above the ground [m]
+constexpr float kMostDense = 8;       // limit for the count of a cell, which walls reach
 constexpr double kYawStep = 0.035;    // two degrees
-constexpr int kElsewhere = 6;         // least distance of a second peak [cells]
+constexpr int kElsewhere = 6;         // least distance to a second peak [cells]
 constexpr std::size_t kLeastGround = 30;
 
 using Density = Place::Density;
 
-/// Transforms rows, then columns, in place.
+/// Computes the Fourier transform of all rows and then of all columns, in place.
 void Transform(Density* map, bool forward) {
   Eigen::FFT<float> fft;
   Eigen::VectorXcf in(Place::kCells);
@@ -53,7 +53,8 @@ void Transform(Density* map, bool forward) {
 int CellOf(double c) { return static_cast<int>(std::floor(c)) + Place::kCells / 2; }
 bool IsCell(int i) { return i >= 0 && i < Place::kCells; }
 
-/// Counts the points above ground in each cell after a turn by `yaw`.
+/// Returns the number of points above the ground in each cell. The points are first rotated by
+/// `yaw`.
 Density Count(const Points& standing, double yaw) {
   Eigen::ArrayXXf counts = Eigen::ArrayXXf::Zero(Place::kCells, Place::kCells);
   const double c = std::cos(yaw);
@@ -78,7 +79,8 @@ int Signed(Eigen::Index i) {
   return static_cast<int>(i < Place::kCells / 2 ? i : i - Place::kCells);
 }
 
-/// Returns the best peak of a correlation, and the best value at least kElsewhere from it.
+/// Returns the highest peak of a correlation, and the highest value that is at least kElsewhere
+/// away from this peak.
 std::pair<Peak, float> FindPeak(const Density& correlation) {
   Eigen::ArrayXXf real = correlation.real();
   Peak peak;
@@ -94,7 +96,8 @@ std::pair<Peak, float> FindPeak(const Density& correlation) {
   return {peak, real.maxCoeff()};
 }
 
-/// Raises and tilts b so that its ground meets that of a. Returns false if they share no ground.
+/// Raises and tilts `b` so that its ground coincides with the ground of `a`. Returns false if they
+/// have no common ground.
 bool MeetGround(const Place& a, const Place& b, Pose* pose) {
   for (int round = 0; round < 3; ++round) {
     Eigen::Matrix3d lhs = 1e-3 * Eigen::Matrix3d::Identity();
@@ -110,11 +113,12 @@ bool MeetGround(const Place& a, const Place& b, Pose* pose) {
     std::nth_element(gaps.begin(), middle, gaps.end(),
                      [](const auto& x, const auto& y) { return x.second < y.second; });
     const double median = middle->second;
-    // Cars and walls are outliers: only gaps near the median count.
+    // Only gaps near the median are used, because cars and walls are outliers.
     const double reach = round == 0 ? 3 : 1;
     for (const auto& [p, gap] : gaps) {
       if (std::abs(gap - median) > reach) continue;
-      const Eigen::Vector3d row(1, p.y(), -p.x());  // a lift, and turns about x and y
+      // A translation along z, and rotations about x and y.
+      const Eigen::Vector3d row(1, p.y(), -p.x());
       lhs += row * row.transpose();
       rhs += row * gap;
     }

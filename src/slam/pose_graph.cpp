@@ -15,7 +15,7 @@ using odometry::Pose;
 using odometry::Twist;
 
 constexpr int kMostIterations = 50;
-constexpr double kConverged = 1e-9;  // least relative decrease of the cost in a step
+constexpr double kConverged = 1e-9;  // stop if a step decreases the cost by a smaller fraction
 constexpr double kLeastDamping = 1e-9;
 constexpr double kMostDamping = 1e6;
 
@@ -39,8 +39,8 @@ double CostOf(const std::vector<Edge>& edges, const std::vector<Pose>& poses) {
   return cost;
 }
 
-/// The normal equations of all edges. The unknowns are motions of the poses in their own frames,
-/// without the first pose.
+/// The normal equations for all edges. The unknowns are motions of the poses in their own frames.
+/// The first pose is fixed.
 struct Equations {
   Eigen::SparseMatrix<double> lhs;
   Eigen::VectorXd rhs;
@@ -52,7 +52,7 @@ struct Equations {
     for (const Edge& edge : edges) {
       const Twist error = ErrorOf(edge, poses);
       const Twist weights = WeightsOf(edge);
-      // Sola et al., (65) and (66), with the Jacobian of a small error.
+      // See Sola et al., (65) and (66). The Jacobian is an approximation for small errors.
       const std::array<Matrix6, 2> jacobians = {
           -odometry::Adjoint(poses[edge.b].Inverse() * poses[edge.a]), Matrix6::Identity()};
       const std::array<std::size_t, 2> ends = {edge.a, edge.b};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Finds the poses that fit given relative poses best.
+// Finds the poses that agree best with measured relative poses.
 #pragma once
 #include <vector>
 
@@ -7,7 +7,7 @@
 
 namespace lidar::slam {
 
-/// `pose` is the measured pose of `b` in the frame of `a`.
+/// A relative pose: `pose` is the measured pose of `b` in the frame of `a`.
 struct Edge {
   std::size_t a = 0;
   std::size_t b = 0;
@@ -16,8 +16,9 @@ struct Edge {
   double sigma_rad = 0.005;
 };
 
-/// Changes all poses but the first, by the method of Levenberg and Marquardt. Returns false if
-/// edges do not connect all poses.
+/// Optimises all poses except the first, with the Levenberg-Marquardt method. Returns false if
+/// there are no edges, if an edge does not connect two of the poses, or if the equations have no
+/// solution.
 bool Optimise(const std::vector<Edge>& edges, std::vector<odometry::Pose>* poses);
 
 }  // namespace lidar::slam
