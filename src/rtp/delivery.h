@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Finds the slices that arrived, from the sequence numbers of the packets that arrived.
+// Finds out which slices have arrived, from the sequence numbers of the packets that have arrived.
 #pragma once
 #include <cstdint>
 #include <deque>
@@ -8,8 +8,8 @@
 
 namespace lidar::rtp {
 
-/// Keeps recent packets of an SSRC, and their slices, in bounded memory: the oldest packets without
-/// acknowledgement are dropped.
+/// The recent packets of an SSRC and their slices. The memory is bounded: if there are too many
+/// packets without acknowledgement, the oldest are dropped.
 class Delivery {
  public:
   struct Slice {
@@ -23,17 +23,17 @@ class Delivery {
     bool ends_slice = false;
   };
 
-  /// Notes a sent packet. Packets come in the order of sending.
+  /// Notes that a packet was sent. Must be called in the order of sending.
   void OnSent(const Packet& packet);
-  /// Notes that the receiver has the packets from `first` to `last`. Returns the slices that are
-  /// now whole.
+  /// Notes that the receiver has the packets from `first` to `last`. Returns the slices that have
+  /// become complete by this.
   std::vector<Slice> OnReceived(std::uint32_t ssrc, std::uint16_t first, std::uint16_t last);
 
   static constexpr std::size_t kMostPackets = 8'192;
 
  private:
   struct SentPacket {
-    std::uint64_t slice;  // number of the slice
+    std::uint64_t slice;  // number of the packet's slice
     bool received = false;
   };
   struct SentSlice {
@@ -47,7 +47,7 @@ class Delivery {
   std::optional<std::uint32_t> ssrc_;
   std::uint16_t first_seq_ = 0;
   std::deque<SentPacket> packets_;
-  std::uint64_t first_slice_ = 0;  // number of the first of slices_
+  std::uint64_t first_slice_ = 0;  // number of the first slice in slices_
   std::deque<SentSlice> slices_;
 };
 

@@ -6,8 +6,8 @@
 namespace lidar::rtp {
 namespace {
 
-// Size of a map node and its vector. It counts as memory, too, because it is most of the memory of
-// a tiny fragment.
+// The size of a map node and its vector. It is counted, because it is most of the memory of a tiny
+// fragment.
 constexpr std::size_t kFragmentOverhead = 96;
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The fragments of a unit, ordered by their RTP sequence numbers.
+// The fragments of one unit, ordered by their RTP sequence numbers.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -14,17 +14,16 @@ class FragmentBuffer {
  public:
   enum class Added { kStored, kDuplicate, kContradiction };
 
-  /// Stores a copy of the unit's body.
+  /// Stores a copy of the body of a fragment.
   Added Add(std::uint16_t sequence, const Unit& unit);
-  /// Returns true if all fragments from the first to the last are there.
+  /// Returns true if all fragments from the first to the last have arrived.
   bool IsWhole() const;
-  /// Returns the unit's bytes if their number and CRC are right, else nothing. Call it if
-  /// IsWhole().
+  /// Returns the bytes of the unit, or nothing if their number or CRC is wrong. Requires IsWhole().
   std::optional<std::vector<std::uint8_t>> Join() const;
-  /// The unit's first packet, without its body; null before it arrives.
+  /// Returns the first fragment without its body, or null before it arrives.
   const Unit* start() const { return start_ ? &*start_ : nullptr; }
   std::optional<std::uint16_t> start_sequence() const;
-  /// Memory that the fragments hold, roughly [bytes].
+  /// Returns about how much memory the fragments take [bytes].
   std::size_t cost() const { return cost_; }
 
  private:
@@ -32,7 +31,7 @@ class FragmentBuffer {
             std::map<int, std::vector<std::uint8_t>>::iterator to);
 
   std::map<int, std::vector<std::uint8_t>> fragments_;  // by distance from base_
-  std::optional<std::uint16_t> base_;                   // sequence number of the first arrival
+  std::optional<std::uint16_t> base_;                   // of the fragment that arrived first
   std::optional<int> first_;
   std::optional<int> last_;
   std::optional<Unit> start_;

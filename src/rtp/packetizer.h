@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Cuts slices and stream configs into RTP payloads, or joins small slices into one payload.
+// Splits slices and stream configs into RTP payloads, or puts several small slices into one
+// payload.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -9,28 +10,29 @@
 
 namespace lidar::rtp {
 
-/// An RTP payload: `header`, then `body_size` bytes of the unit from `body_offset`, so that the
-/// caller need not copy the unit.
+/// An RTP payload. It consists of `header` and of `body_size` bytes of the unit, starting at
+/// `body_offset`. So the unit is not copied.
 struct Packet {
   std::vector<std::uint8_t> header;
   std::size_t body_offset = 0;
   std::size_t body_size = 0;
-  bool marker = false;  // the last packet of a slice
+  bool marker = false;  // true for the last packet of a slice
 };
 
-/// Cuts `bytes`, the body of `unit`, into packets of at most `max_payload` bytes. Computes the
-/// unit's type, length and CRC. Returns no packets if there are no bytes or more than
-/// kMaxUnitBytes, or if `max_payload` is below kMinPayload.
+/// Splits `bytes`, the body of `unit`, into packets of at most `max_payload` bytes. Sets the type,
+/// length and CRC of the unit. Returns no packets if `bytes` is empty or longer than kMaxUnitBytes,
+/// or if `max_payload` is less than kMinPayload.
 std::vector<Packet> Packetize(Unit unit, ByteView bytes, std::size_t max_payload);
 
-/// Collects small slices into one aggregation packet.
+/// Collects small slices for an aggregation packet.
 class Aggregator {
  public:
-  /// Returns false and adds nothing if the unit does not fit into the packet, or if its `rtp_ticks`
-  /// (running time in 90 kHz) exceed those of the first unit by more than 16 bits can hold.
+  /// Adds a unit. `rtp_ticks` is its running time in units of 1 / 90000 s. Returns false and adds
+  /// nothing if the unit does not fit into the packet. Does so also if its `rtp_ticks` exceed the
+  /// `rtp_ticks` of the first unit by more than 16 bits can represent.
   bool Add(Unit unit, ByteView bytes, std::size_t max_payload, std::uint64_t rtp_ticks);
-  /// Returns the packet, which has the RTP timestamp of its first unit; it is a single unit packet
-  /// if there is only one unit. Returns nothing if there is no unit.
+  /// Returns the packet. Its RTP timestamp must be the timestamp of the first unit. If there is
+  /// only one unit, the result is a single unit packet. If there is no unit, returns nothing.
   std::optional<Packet> Take();
   bool empty() const { return units_ == 0; }
 
@@ -40,13 +42,13 @@ class Aggregator {
   std::uint64_t first_ticks_ = 0;
 };
 
-/// Numbers the scans that are sent, and announces unsent slices, so that a receiver does not count
-/// them as lost.
+/// Numbers the scans that are sent. Also lists slices that were not sent, so that a receiver does
+/// not count them as lost.
 class ScanCounter {
  public:
   explicit ScanCounter(std::uint32_t first) : number_(first) {}
-  /// Sets unit type, scan number and skipped slices of `unit`, the next slice to send. The unit's
-  /// index, count and scan id must be set.
+  /// Sets the unit type, the scan number and the skipped slices of `unit`. Must be called for each
+  /// slice in the order of sending. The index, count and scan id of the unit must be set.
   void Place(Unit* unit);
 
  private:
@@ -59,7 +61,7 @@ class ScanCounter {
 
   std::optional<Last> last_;
   std::uint32_t number_;
-  std::uint64_t skipped_ = 0;  // as in SliceInfo
+  std::uint64_t skipped_ = 0;  // bits as in SliceInfo
 };
 
 }  // namespace lidar::rtp

@@ -43,7 +43,7 @@ bool ReadSlice(bool starts, ByteReader* r, Unit* unit) {
   return unit->slice.index < unit->slice.count && unit->slice.count <= kMaxSlicesPerScan;
 }
 
-/// Parses a single unit or a fragment that fills `bytes`.
+/// Parses a single unit or a fragment, which must fill `bytes`.
 std::optional<Unit> ParseUnit(ByteView bytes) {
   ByteReader r(bytes);
   const std::uint8_t first = r.U8();
@@ -127,7 +127,7 @@ std::uint32_t UnitCrc(const Unit& unit, ByteView bytes) {
 std::vector<Unit> ParsePayload(ByteView payload) {
   if (payload.empty()) return {};
   if (payload.data[0] >> 5 == static_cast<unsigned>(PacketType::kAggregation)) {
-    // An aggregate has no unit type of its own; each of its units has one.
+    // An aggregation packet has no unit type. Each of its units has its own type.
     return (payload.data[0] & 31) == 0 ? ParseAggregate(payload) : std::vector<Unit>{};
   }
   const auto unit = ParseUnit(payload);

@@ -9,9 +9,9 @@
 namespace lidar::rtp {
 namespace {
 
-// Slices of the last config may still be under way when the next config arrives.
+// Several configs are kept, because slices with an earlier config may arrive after a newer config.
 constexpr std::size_t kMaxConfigs = 4;
-constexpr Duration kTick{100'000};  // 9 ticks of 90 kHz
+constexpr Duration kTick{100'000};  // the duration of 9 ticks at 90 kHz
 
 Duration FromTicks(std::uint16_t ticks) { return kTick * ticks / 9; }
 
@@ -43,7 +43,8 @@ void Reassembler::Push(const RtpPacket& packet, const std::vector<Unit>& units,
 }
 
 bool Reassembler::Admit(SlicePosition p, const RtpPacket& packet, const Unit& unit) {
-  if (!ledger_.started() && !StartsUnit(unit.type)) return true;  // the unit's start may still come
+  // The first packet of the slice may still arrive.
+  if (!ledger_.started() && !StartsUnit(unit.type)) return true;
   const bool first = !ledger_.started();
   switch (ledger_.Admit(p, unit.slice.count, packet.arrival)) {
     case Admission::kOpen:
@@ -101,7 +102,8 @@ void Reassembler::Complete(PendingMap::iterator it, std::vector<ReceivedSlice>* 
     Emit(it, std::move(config), out);
 }
 
-/// `skipped` is as in SliceInfo. A slice with a waiting packet counts as not skipped.
+/// Counts slices before `p` as skipped. `skipped` is as in SliceInfo. A slice of which a packet has
+/// arrived is not skipped.
 void Reassembler::BookSkipped(SlicePosition p, std::uint64_t skipped) {
   for (auto at = ledger_.Before(p); at && skipped != 0; at = ledger_.Before(*at), skipped >>= 1)
     if ((skipped & 1) != 0 && pending_.count(*at) == 0) ledger_.Skip(*at);
@@ -126,7 +128,8 @@ void Reassembler::Emit(PendingMap::iterator it, std::shared_ptr<const StreamConf
 
 void Reassembler::PushConfig(const RtpPacket& packet, const Unit& unit,
                              std::vector<ReceivedSlice>* out) {
-  // Each repetition of the config starts anew, because fragments of two repetitions must not mix.
+  // Each repetition of the config starts a new buffer, because fragments of two repetitions must
+  // not be mixed.
   const auto start = config_fragments_.start_sequence();
   if (StartsUnit(unit.type) && start && *start != packet.sequence) config_fragments_ = {};
   config_fragments_.Add(packet.sequence, unit);
@@ -208,7 +211,7 @@ void Reassembler::DropBefore(SlicePosition limit) {
 }
 
 Reassembler::PendingMap::iterator Reassembler::Remove(PendingMap::iterator it) {
-  // A whole slice that is removed before its output never got its config.
+  // If a whole slice is removed before it was output, its config has never arrived.
   if (!it->second.bytes.empty()) ledger_.Settle(it->first, SliceOutcome::kConfigMismatch);
   pending_bytes_ -= it->second.fragments.cost();
   return pending_.erase(it);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Reassembles the packets of a stream to slices; a lost packet costs its slice only.
+// Reassembles slices from the packets of a stream. If a packet is lost, only its slice is lost.
 #pragma once
 #include <cstdint>
 #include <deque>
@@ -16,71 +16,76 @@
 
 namespace lidar::rtp {
 
-/// An RTP packet as it came in.
+/// A received RTP packet.
 struct RtpPacket {
   std::uint32_t ssrc = 0;
   std::uint16_t sequence = 0;
-  Time arrival;             // of any clock that does not go back
-  std::optional<Time> pts;  // passed on to the slice
+  Time arrival;             // on any clock that never goes backwards
+  std::optional<Time> pts;  // becomes the time of the slice
   ByteView payload;
 };
 
-/// A whole slice, equal to the one that was sent.
+/// A complete slice. Its bytes equal the bytes that were sent.
 struct ReceivedSlice {
   SliceId id;
   SliceInfo info;
-  std::optional<Time> pts;  // of the slice's packet that arrived first
+  std::optional<Time> pts;  // PTS of the slice's packet that arrived first
   std::shared_ptr<const StreamConfig> config;
   std::vector<std::uint8_t> bytes;
-  bool discont = false;  // the first slice, or slices before it are lost
+  bool discont = false;  // true for the first slice, and if slices before it are lost
 };
 
 struct PacketAccounts {
-  std::uint64_t invalid = 0;    // malformed, or contradicting earlier packets
-  std::uint64_t duplicate = 0;  // of a packet or slice that has arrived
-  std::uint64_t late = 0;       // of a slice that counts as lost, or that precedes the join
+  std::uint64_t invalid = 0;    // malformed, or contradicts earlier packets
+  std::uint64_t duplicate = 0;  // the packet or its slice has already arrived
+  // The slice already counts as lost, or is older than the first slice.
+  std::uint64_t late = 0;
   std::uint64_t config_damaged = 0;
 };
 
-/// kMaxPendingBytes and kMaxPendingSlices bound the memory: the oldest slices are dropped first.
+/// Reassembles the slices of one stream. The memory is limited by kMaxPendingBytes and
+/// kMaxPendingSlices: if there are more, the oldest slices are dropped.
 class Reassembler {
  public:
   explicit Reassembler(Duration max_reorder_time) : ledger_(max_reorder_time) {}
-  /// For packets that may be of the stream of `before`, but with other scan numbers. Unwraps them
-  /// from the newest number there.
+  /// Creates a reassembler for packets that may belong to the stream of `before`, but have other
+  /// scan numbers. Scan numbers are unwrapped relative to the newest number in `before`.
   Reassembler(Duration max_reorder_time, const Reassembler& before)
       : ledger_(max_reorder_time), newest_scan_(before.newest_scan_) {}
 
-  /// Returns true if the packet's scan numbers continue this stream, or if no slice has begun. One
-  /// damaged header must not move the stream to other scan numbers.
+  /// Returns true if the scan numbers of a packet continue this stream, or if no slice has begun.
+  /// Otherwise the packet must not be pushed, because a single damaged header must not change the
+  /// scan numbers of the stream.
   bool Continues(const std::vector<Unit>& units) const;
-  /// Takes the units of `packet` and appends the slices that are now whole to `out`, in the order
-  /// of their completion: no slice waits for another.
+  /// Processes the units of `packet`. Appends the slices that are complete now to `out`, in the
+  /// order of their completion. A slice never waits for another slice.
   void Push(const RtpPacket& packet, const std::vector<Unit>& units,
             std::vector<ReceivedSlice>* out);
-  /// Returns true if the first slice here follows the last one of `previous` within `max_scans`
-  /// scans.
+  /// Returns true if the first slice of this stream is after the last slice of `previous`, by at
+  /// most `max_scans` scans.
   bool IsAfter(const Reassembler& previous, std::int64_t max_scans) const;
-  /// Returns true if a slice was whole and undamaged, with or without its config.
+  /// Returns true if a slice was complete and undamaged, even if its config has not arrived.
   bool has_whole_slice() const { return has_whole_slice_; }
-  /// Returns true if a slice has begun.
+  /// Returns true if any slice has begun.
   bool started() const { return ledger_.started(); }
-  /// Continues after `previous`, the same stream before an outage. Counts the slices of the outage
-  /// as lost, takes over the configs, and appends the slices that waited for them.
+  /// Continues `previous`, which is the same stream before an outage. Counts the slices of the
+  /// outage as lost and copies the configs. Appends to `out` the slices that waited for these
+  /// configs.
   void GoOn(const Reassembler& previous, std::vector<ReceivedSlice>* out);
-  /// The sender of `previous` restarted with the same SSRC. Takes over only configs that came after
-  /// its last slice, because older ids may have a new meaning.
+  /// Replaces `previous`, whose sender has restarted with the same SSRC. Copies only configs that
+  /// arrived after the last slice of `previous`, because ids of older configs may have a new
+  /// meaning.
   void StartAnew(const Reassembler& previous, std::vector<ReceivedSlice>* out);
-  /// Discards the accounts of the slices so far, and counts anew from the incomplete slices on.
+  /// Resets the counts of slices, and starts to count with the slices that are incomplete now.
   void JoinAnew(Time now);
-  /// End of stream: incomplete slices are lost.
+  /// Counts incomplete slices as lost, at the end of the stream.
   void Finish();
 
   void set_max_reorder_time(Duration t) { ledger_.set_max_reorder_time(t); }
   const SliceAccounts& slices() const { return ledger_.accounts(); }
   const PacketAccounts& packets() const { return packets_; }
   std::uint64_t configs() const { return config_count_; }
-  /// Memory that incomplete slices hold [bytes].
+  /// Returns the memory that incomplete slices take [bytes].
   std::size_t pending_bytes() const { return pending_bytes_; }
 
   static constexpr std::size_t kMaxPendingBytes = std::size_t{16} << 20;
@@ -92,12 +97,12 @@ class Reassembler {
   struct Pending {
     FragmentBuffer fragments;
     std::optional<Time> pts;
-    std::vector<std::uint8_t> bytes;  // once whole: waits for its config
+    std::vector<std::uint8_t> bytes;  // the complete slice, while it waits for its config
   };
   struct KnownConfig {
     std::uint8_t id;
     std::shared_ptr<const StreamConfig> config;
-    bool after_slices = true;  // came after the last slice
+    bool after_slices = true;  // true if it arrived after the last slice
   };
   using PendingMap = std::map<SlicePosition, Pending>;
 
@@ -121,7 +126,7 @@ class Reassembler {
   std::uint64_t Missing() const;
 
   SliceLedger ledger_;
-  std::int64_t newest_scan_ = 0;  // unwrapped
+  std::int64_t newest_scan_ = 0;  // unwrapped number of the newest scan
   bool has_whole_slice_ = false;
   PendingMap pending_;
   std::size_t pending_bytes_ = 0;

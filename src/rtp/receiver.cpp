@@ -9,8 +9,9 @@
 namespace lidar::rtp {
 namespace {
 
-constexpr int kMaxSequenceStep = 64;  // between two packets of a candidate
-// No sensor turns faster, so a stream that advanced further in an outage is another stream.
+constexpr int kMaxSequenceStep = 64;  // limit between two packets of a candidate
+// No sensor turns faster. If the scan numbers of a stream have advanced by more during an outage,
+// it is another stream.
 constexpr double kMostScansPerSecond = 1'000;
 constexpr std::int64_t kScansWithoutClock = 10'000;  // limit if arrival times do not advance
 
@@ -52,8 +53,8 @@ void Receiver::Dispatch(const RtpPacket& packet, const std::vector<Unit>& units,
     return;
   }
   if (packet.ssrc != active_->ssrc) NoteRival(packet.ssrc);
-  // A single whole slice of the candidate is enough, because a throttled sender's slices are far
-  // apart.
+  // A single complete slice of the candidate is enough, because the slices of a throttled sender
+  // are far apart.
   if (packet.ssrc == active_->ssrc && candidate_ && !GoesOnWithCandidate(packet, units) &&
       candidate_->reassembler.has_whole_slice() && CandidateGoesOn(packet.arrival)) {
     Promote(packet.arrival, out);
@@ -64,15 +65,16 @@ void Receiver::Dispatch(const RtpPacket& packet, const std::vector<Unit>& units,
   if (CandidateHasWon(packet.arrival)) Promote(packet.arrival, out);
 }
 
-/// A candidate that continues beside the active stream is not a restart, so its slices are
-/// discarded.
+/// Discards the slices of the candidate. Packets of the active stream still arrive, so the
+/// candidate does not come from a restarted sender of this stream.
 void Receiver::DropHeld() {
   if (candidate_->held.empty()) return;
   candidate_->held.clear();
   candidate_->reassembler.JoinAnew(candidate_->last_arrival);
 }
 
-/// Too many SSRCs reset the counts. Forged SSRCs have no other effect.
+/// Counts a packet of another SSRC. If there are too many SSRCs, all counts are reset, so forged
+/// SSRCs have no other effect.
 void Receiver::NoteRival(std::uint32_t ssrc) {
   if (rivals_.size() >= kMaxRivals && rivals_.count(ssrc) == 0) rivals_.clear();
   if (++rivals_[ssrc] >= kRivalPackets) rival_ = ssrc;
@@ -105,8 +107,8 @@ bool Receiver::CandidateHasWon(Time now) const {
   return same || silent || candidate_->streak >= kProbationNoClock;
 }
 
-/// Returns true if the candidate is the active stream after an outage, and false for a restarted
-/// sender.
+/// Returns true if the candidate is the active stream after an outage. Returns false if its sender
+/// has restarted.
 bool Receiver::CandidateGoesOn(Time now) const {
   if (candidate_->ssrc != active_->ssrc) return false;
   const double most = Seconds(now - active_arrival_) * kMostScansPerSecond;

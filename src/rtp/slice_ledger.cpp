@@ -9,9 +9,9 @@
 namespace lidar::rtp {
 namespace {
 
-// Bounds memory and time. The reassembler already refuses smaller jumps (kMaxScanJump).
+// The limit bounds memory and time. The reassembler has a smaller limit already (kMaxScanJump).
 constexpr std::int64_t kMaxOpenScans = 64;
-// A slice may announce 64 skipped slices, at worst of as many scans.
+// A slice may list 64 skipped slices, which may belong to as many scans.
 constexpr std::int64_t kKeptScans = 64;
 constexpr int kToldSlices = 64;
 
@@ -64,7 +64,7 @@ Admission SliceLedger::Admit(SlicePosition p, std::uint32_t count, Time now) {
 bool SliceLedger::Contradicts(std::int64_t number, std::uint32_t count) {
   const Scan* scan = Find(number);
   if (scan == nullptr || scan->slices.size() == count) return false;
-  // A guessed number of slices may change until the first slice of the scan is counted.
+  // A number of slices that was guessed may change until the first slice of the scan is counted.
   return scan->count_known || scan->open != scan->slices.size();
 }
 
@@ -78,7 +78,7 @@ void SliceLedger::Start(SlicePosition p, std::uint32_t count) {
   Scan& scan = scans_.front();
   scan.count_known = true;
   scan.joined_late = p.index > 0;
-  // Slices before the join are not counted.
+  // Slices before the first received slice are not counted.
   std::fill_n(scan.slices.begin(), p.index, SliceOutcome::kLost);
   scan.open = count - p.index;
 }
@@ -161,7 +161,8 @@ void SliceLedger::TakeBackLoss(Scan* scan, std::uint32_t index) {
   BookScan(scan);
 }
 
-/// A slice before the origin is in the accounts only if Continue() counted it as lost.
+/// Counts a slice before the origin as skipped. It is in the accounts only if Continue() has
+/// counted it as lost.
 void SliceLedger::SkipBeforeOrigin(SlicePosition p) {
   if (!skipped_before_origin_.insert(p).second || !previous_end_) return;
   if (!(*previous_end_ < p) && lost_before_end_.erase(p) == 0) return;
@@ -169,7 +170,8 @@ void SliceLedger::SkipBeforeOrigin(SlicePosition p) {
   ++accounts_.slices_skipped;
 }
 
-/// Returns the number of skipped scans; 0 if the source restarted its numbers.
+/// Returns the number of skipped scans between two scans, or 0 if the source has restarted its
+/// numbers.
 std::uint64_t SliceLedger::SkippedBetween(ScanId before, ScanId after) {
   const std::int64_t skipped =
       std::int64_t{SequenceDistance(after.id, before.id)} - (after.scan - before.scan);
@@ -225,12 +227,12 @@ void SliceLedger::CloseBefore(SlicePosition limit) {
 void SliceLedger::Finish() {
   if (!started()) return;
   CloseBefore({frontier_->scan, frontier_->index + 1});
-  // Slices after the frontier may not have been sent, so they are not lost. Their scan ends here
-  // and is counted.
+  // Slices after the frontier may not have been sent, so they do not count as lost. But their scan
+  // ends here and is counted.
   Scan* scan = Find(frontier_->scan);
   if (scan != nullptr && scan->open > 0) {
     BookScan(scan);
-    scan->joined_late = true;  // the scan is not counted again
+    scan->joined_late = true;  // so that the scan is not counted again
   }
 }
 
@@ -249,7 +251,7 @@ void SliceLedger::Continue(const SliceLedger& previous) {
     const auto between = static_cast<std::uint64_t>(origin_.scan - last.scan - 1);
     accounts_.scans_lost += between;
     accounts_.slices_lost += between * count + origin_.index;
-    // Finish() keeps the frontier's scan, so scans_.back() is the scan of `last`.
+    // Finish() keeps the scan of the frontier, so scans_.back() is the scan of `last`.
     accounts_.slices_lost += previous.scans_.back().slices.size() - last.index - 1;
     if (Scan* scan = Find(origin_.scan)) scan->joined_late = false;
   } else {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Counts each slice exactly once: received, damaged, without config, skipped by the sender, or
+// Counts each slice exactly once: as received, damaged, without config, skipped by the sender, or
 // lost.
 #pragma once
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace lidar::rtp {
 
-/// Position of a slice in its stream; `scan` is the unwrapped scan number.
+/// The position of a slice in its stream. `scan` is the scan number, unwrapped.
 struct SlicePosition {
   std::int64_t scan = 0;
   std::uint32_t index = 0;
@@ -26,18 +26,19 @@ struct SlicePosition {
   }
 };
 
-/// Each slice and scan since the first one is in one of the counters once its outcome is known.
+/// The counters of slices and scans. Each slice and scan after the first slice is counted in one of
+/// them as soon as its outcome is known.
 struct SliceAccounts {
   SliceAccounts& operator+=(const SliceAccounts& o);
 
   std::uint64_t slices_received = 0;
   std::uint64_t slices_lost = 0;
-  std::uint64_t slices_damaged = 0;          // all packets came, but their bytes are wrong
-  std::uint64_t slices_config_mismatch = 0;  // whole, but without a config of their id
+  std::uint64_t slices_damaged = 0;          // all packets arrived, but with wrong bytes
+  std::uint64_t slices_config_mismatch = 0;  // complete, but their config never arrived
   std::uint64_t slices_skipped = 0;          // never sent
-  std::uint64_t scans_complete = 0;          // all slices received, except for skipped ones
+  std::uint64_t scans_complete = 0;          // all slices that were not skipped were received
   std::uint64_t scans_incomplete = 0;
-  std::uint64_t scans_lost = 0;     // no slice received
+  std::uint64_t scans_lost = 0;     // no slice was received
   std::uint64_t scans_skipped = 0;  // never sent, but numbered by the source
 };
 
@@ -51,44 +52,48 @@ enum class SliceOutcome : std::uint8_t {
 };
 enum class Admission { kOpen, kSettled, kTooOld, kContradiction };
 
-/// A slice is lost `max_reorder_time` after a later one began. The receiver joins with the first
-/// admitted slice, so earlier slices do not count as lost.
+/// Decides when a slice is lost, and counts slices and scans. A slice is lost if it is still
+/// incomplete `max_reorder_time` after a later slice began. Slices before the first admitted slice
+/// do not count as lost, because the receiver joined the stream later.
 class SliceLedger {
  public:
   explicit SliceLedger(Duration max_reorder_time) : max_reorder_time_(max_reorder_time) {}
 
   bool started() const { return frontier_.has_value(); }
-  /// Returns whether a packet of this slice is still useful. A newer slice moves the frontier.
+  /// Returns whether a packet of this slice is still useful. A slice that is newer than the
+  /// frontier becomes the new frontier.
   Admission Admit(SlicePosition p, std::uint32_t count, Time now);
-  /// Sets the outcome of an open slice.
+  /// Sets the outcome of a slice that is still open.
   void Settle(SlicePosition p, SliceOutcome outcome);
-  /// Counts the slice as skipped by the source, even if it was counted as lost.
+  /// Counts the slice as skipped by the source. If it was counted as lost, corrects the counts.
   void Skip(SlicePosition p);
-  /// Notes the source's number `id` of `scan`. These numbers have gaps for skipped scans.
+  /// Notes the number `id` that the source gave to `scan`. If the source skips scans, these numbers
+  /// have gaps.
   void BookScanId(std::int64_t scan, std::uint32_t id);
-  /// Returns the slice before `p`, or nothing if its scan is forgotten. Scans before the first scan
-  /// are assumed to have as many slices as the first.
+  /// Returns the slice before `p`, or nothing if its scan is no longer stored. Scans before the
+  /// first scan are assumed to have as many slices as the first scan.
   std::optional<SlicePosition> Before(SlicePosition p) const;
 
-  /// Returns the position before which slices are late at `now`; CloseBefore() counts them.
+  /// Returns the position before which all open slices are late at the time `now`. CloseBefore()
+  /// counts them.
   std::optional<SlicePosition> Overdue(Time now) const;
   /// Counts all open slices before `limit` as lost.
   void CloseBefore(SlicePosition limit);
-  /// Forgets all slices and counters.
+  /// Resets all slices and counters.
   void StartAnew() { *this = SliceLedger(max_reorder_time_); }
-  /// End of stream: all open slices up to the frontier are lost.
+  /// Counts all open slices up to the frontier as lost, at the end of the stream.
   void Finish();
-  /// Continues after a long outage of the same stream. `previous` is finished. Scans between it and
-  /// this ledger's first slice are lost, and so is the beginning of the first scan here. The
-  /// accounts of `previous` are added, because later slices may still announce skipped slices of
-  /// `previous`.
+  /// Continues the stream of `previous` after a long outage. `previous` must be finished. The scans
+  /// between `previous` and the first slice of this ledger are counted as lost, and so are the
+  /// slices before this first slice in its scan. The accounts of `previous` are added, because
+  /// later slices may still announce that slices of `previous` were skipped.
   void Continue(const SliceLedger& previous);
 
   void set_max_reorder_time(Duration t) { max_reorder_time_ = t; }
   const SliceAccounts& accounts() const { return accounts_; }
-  /// The first slice admitted.
+  /// Returns the slice that was admitted first.
   SlicePosition origin() const { return origin_; }
-  /// The newest slice seen.
+  /// Returns the newest slice that was admitted.
   std::optional<SlicePosition> frontier() const { return frontier_; }
 
  private:
@@ -97,9 +102,9 @@ class SliceLedger {
     std::uint32_t open = 0;
     std::uint32_t received = 0;
     std::uint32_t skipped = 0;
-    bool count_known = false;  // false: guessed from a neighbour, without a packet
-    bool joined_late = false;  // its beginning was sent before the receiver joined
-    std::uint64_t SliceAccounts::*booked = nullptr;  // counter to which the scan was added
+    bool count_known = false;  // false: guessed from another scan, because no packet has arrived
+    bool joined_late = false;  // the receiver joined after the scan had begun
+    std::uint64_t SliceAccounts::*booked = nullptr;  // the counter in which the scan was counted
   };
   struct ScanId {
     std::int64_t scan = 0;
@@ -124,20 +129,22 @@ class SliceLedger {
   const Scan* Find(std::int64_t number) const;
 
   Duration max_reorder_time_;
-  std::deque<Scan> scans_;       // without gaps, from first_scan_
-  std::int64_t first_scan_ = 0;  // number of scans_.front()
-  std::int64_t open_scan_ = 0;   // earlier scans are closed; later slices may announce skipped ones
-  SlicePosition origin_;         // the first slice
+  std::deque<Scan> scans_;       // consecutive scans, starting with first_scan_
+  std::int64_t first_scan_ = 0;  // the number of scans_.front()
+  // Earlier scans are closed, but are kept, because later slices may announce that their slices
+  // were skipped.
+  std::int64_t open_scan_ = 0;
+  SlicePosition origin_;  // the slice that was admitted first
   std::uint32_t origin_count_ = 1;
   std::set<SlicePosition> skipped_before_origin_;
-  // The end of the earlier stream that this one continues, if any. Slices after it and the slices
-  // in lost_before_end_ are lost.
+  // The end of the stream that Continue() was called with, if any. Slices after this end, and the
+  // slices in lost_before_end_, have been counted as lost.
   std::optional<SlicePosition> previous_end_;
-  std::set<SlicePosition> lost_before_end_;  // lost slices among the last ones of that stream
+  std::set<SlicePosition> lost_before_end_;  // lost slices near the end of that stream
   std::optional<SlicePosition> frontier_;
   ScanId first_id_{};  // valid if latest_id_ is set
   std::optional<ScanId> latest_id_;
-  std::deque<Cutoff> cutoffs_;  // both times and positions ascend
+  std::deque<Cutoff> cutoffs_;  // times and positions are both ascending
   SliceAccounts accounts_;
 };
 

@@ -16,17 +16,18 @@ namespace lidar::rtp {
 namespace {
 
 constexpr std::uint8_t kVersion = 1;
-// A fraction of GStreamer's caps is two gint.
+// The numbers of a fraction in GStreamer's caps are of type gint.
 constexpr std::uint32_t kMaxFraction = 0x7FFF'FFFF;
 
-constexpr std::uint8_t kNamedCoder = 0xFF;  // in place of coder and geometry
+constexpr std::uint8_t kNamedCoder = 0xFF;  // replaces the byte with coder and geometry
 
-/// The media types of this project: coders with a number, then streams without slices.
+/// The media types of this project. The first two have coders with a number. The others have no
+/// slices.
 constexpr std::string_view kOwnTypes[] = {"application/x-draco",       "application/x-lidar-slice",
                                           "application/x-pointcloud2", "application/x-imu",
                                           "application/x-odometry",    "application/x-tf"};
 
-/// Returns true for fields that decoders produce.
+/// Returns true for fields that a decoder can produce.
 bool AreDecodable(const std::string& fields) {
   const auto parsed = PointFields::Parse(fields);
   return parsed && parsed->HasPackedXyz() && parsed->ArePacked();

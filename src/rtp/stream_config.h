@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The stream-config unit: what a receiver needs before it can decode a slice.
+// The stream-config unit. A receiver needs it before it can decode slices.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -12,31 +12,31 @@
 
 namespace lidar::rtp {
 
-/// The coder of the slices; the numbers are part of the format. Other coders are identified by
-/// their caps.
+/// The coder of the slices. The numbers are part of the wire format. Coders without a number are
+/// kNamed, and are identified by their caps.
 enum class Coder : std::uint8_t { kDraco = 0, kLidar = 1, kNamed = 15 };
 
 struct StreamConfig {
   Coder coder = Coder::kDraco;
-  ScalarCaps caps;  // for kNamed, which uses nothing else
+  ScalarCaps caps;  // only for kNamed, which has no other fields
   Geometry geometry = Geometry::kXyz;
-  std::uint32_t framerate_n = 0;  // scans/s; 0/1: not known
+  std::uint32_t framerate_n = 0;  // scans/s; 0/1 if not known
   std::uint32_t framerate_d = 1;
-  std::string fields;                      // as in the caps, checked
-  std::vector<std::uint8_t> sensor_model;  // serialised and checked; may be empty
+  std::string fields;                      // as in the caps, and validated
+  std::vector<std::uint8_t> sensor_model;  // serialised and validated; may be empty
 
   std::vector<std::uint8_t> Serialise() const;
-  /// Returns nothing for another version or coder, a wrong length, an invalid sensor model, or
-  /// fields that no decoder produces: decoders produce packed fields with x, y and z as adjacent
-  /// F32. Caps of kNamed must have alignment=slice, and a media type that is not one of this
-  /// project's.
+  /// Returns nothing if the version or the coder is unknown, if the length is wrong, or if the
+  /// sensor model is invalid. Also returns nothing for fields that no decoder produces: they must
+  /// be packed, with x, y and z as adjacent F32. The caps of kNamed must have alignment=slice, and
+  /// a media type that does not belong to this project.
   static std::optional<StreamConfig> Parse(ByteView bytes);
   bool operator==(const StreamConfig& o) const;
   bool operator!=(const StreamConfig& o) const { return !(*this == o); }
 };
 
-/// Returns the id of a config. It depends on the content, so that a restarted sender keeps its id,
-/// and differs from `previous`, the id of the last config.
+/// Returns an id for `config`. The id depends on the content, so that a restarted sender uses the
+/// same id. It differs from `previous`, the id of the last config.
 std::uint8_t ConfigId(const std::vector<std::uint8_t>& config,
                       std::optional<std::uint8_t> previous);
 
