@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Adds to the `stats` that GStreamer's RTP base classes already have.
+// Extends the property `stats` that GStreamer's RTP base classes already have.
 #pragma once
 #include "gst/common/refs.h"
 
 namespace lidar::gst {
 
-/// Returns the `stats` that `object` inherits from `parent_class` or its ancestors, so that the
-/// element can add its own fields.
+/// Returns the value of `stats` that `object` inherits from `parent_class` or an ancestor of it.
+/// The element adds its own fields to this value.
 inline StructurePtr BaseClassStats(GObject* object, gpointer parent_class) {
   GParamSpec* spec = g_object_class_find_property(G_OBJECT_CLASS(parent_class), "stats");
   GValue value = G_VALUE_INIT;

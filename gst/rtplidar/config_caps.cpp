@@ -21,7 +21,7 @@ struct CoderName {
 constexpr CoderName kCoders[] = {{rtp::Coder::kDraco, GST_LIDAR_DRACO_MEDIA_TYPE},
                                  {rtp::Coder::kLidar, GST_LIDAR_SLICE_MEDIA_TYPE}};
 
-constexpr gsize kMaxModelSize = 0xFFFF;  // limit of its length field on the wire
+constexpr gsize kMaxModelSize = 0xFFFF;  // its length field has 16 bits
 
 bool ReadModel(const GstStructure* s, rtp::StreamConfig* config) {
   const GValue* value = gst_structure_get_value(s, "sensor-model");
@@ -74,7 +74,7 @@ std::optional<rtp::StreamConfig> StreamConfigFromCaps(const GstCaps* caps, std::
   *why = "they need packed fields with x, y and z as F32, and with geometry=range a sensor-model";
   const auto config = numbered ? NumberedConfig(known->coder, s) : NamedConfig(caps, why);
   if (!config) return std::nullopt;
-  // A receiver must be able to parse the config.
+  // Checks that a receiver can parse the config.
   const auto bytes = config->Serialise();
   return rtp::StreamConfig::Parse({bytes.data(), bytes.size()});
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Converts caps of encoded clouds to stream configs and back.
+// Converts the caps of encoded clouds to stream configs and back.
 #pragma once
 #include <gst/gst.h>
 
@@ -10,10 +10,10 @@
 
 namespace lidar::gst {
 
-/// Returns nothing if a receiver would refuse the config: `why` then has the reason in words for a
-/// user.
+/// Converts caps to a stream config. If a receiver would refuse the config, returns nothing and
+/// sets `why` to a reason for the user.
 std::optional<rtp::StreamConfig> StreamConfigFromCaps(const GstCaps* caps, std::string* why);
-/// transfer full
+/// Converts a stream config to caps (transfer full).
 GstCaps* StreamConfigToCaps(const rtp::StreamConfig& config);
 
 }  // namespace lidar::gst

@@ -46,7 +46,7 @@ struct Settings {
   guint64 max_reorder_time = 100 * GST_MSECOND;
 };
 
-/// The values of `stats`.
+/// The values in `stats`.
 struct Shown {
   ReceiverAccounts all;
   guint64 invalid = 0;
@@ -83,9 +83,10 @@ const std::array<Stat<Shown>, 20> kStats = {{
     {"outages", A<&ReceiverAccounts::outages>},
 }};
 
-// A warning is posted after this many packets of another payload type, if no packet was received.
+// The number of packets of another payload type after which a warning is posted, if no packet of
+// the right type was received.
 constexpr guint64 kWrongTypePackets = 20;
-// A warning is posted after this many unreadable packets before the first readable one.
+// The number of unreadable packets after which a warning is posted, if no packet was readable.
 constexpr guint64 kUnreadablePackets = 20;
 
 lidar::Duration ReorderTime(const Settings& s) {
@@ -95,20 +96,22 @@ lidar::Duration ReorderTime(const Settings& s) {
 struct State {
   explicit State(GstRTPBaseDepayload* self) : output(self) {}
 
-  std::mutex mutex;  // guards members up to wrong_payload_type; never held while pushing
+  // Guards the members up to wrong_payload_type. It is never held while pushing.
+  std::mutex mutex;
   Settings settings;
   Receiver receiver{ReorderTime(Settings{})};
   guint64 not_rtp = 0;
   guint64 wrong_payload_type = 0;
 
-  // Only the streaming thread uses these.
+  // The members below are used by the streaming thread only.
   SliceOutput output;
-  std::optional<gint> payload_type;  // of the caps
+  std::optional<gint> payload_type;  // payload type in the caps
   bool warned_of_type = false;
   bool warned_of_rival = false;
-  bool readable = false;     // a packet was readable, or the warning was posted
-  lidar::Time now;           // continues in a segment whose PTS begin anew
-  lidar::Duration shift{0};  // from PTS to `now`
+  bool readable = false;  // true after a readable packet, or after the warning
+  // The largest PTS so far plus `shift`. It does not go back in a segment whose PTS start anew.
+  lidar::Time now;
+  lidar::Duration shift{0};  // added to a PTS to get `now`
   bool new_segment = false;
   GstPadChainFunction base_chain = nullptr;
 };
@@ -148,16 +151,16 @@ static const std::array<Property<Settings>, 2> kProperties = {{
      Stats},
 }};
 
-/// Counts a packet of a wrong payload type. Returns true after many of them without a packet of the
-/// right type.
+/// Counts a packet of another payload type. Returns true if at least kWrongTypePackets of these
+/// packets have arrived, but no packet of the right type.
 static bool CountWrongType(State& state) {
   std::lock_guard lock(state.mutex);
   return ++state.wrong_payload_type >= kWrongTypePackets &&
          state.receiver.accounts().packets_received == 0;
 }
 
-/// Returns false, and counts the buffer, if it is not RTP or has another payload type. The base
-/// class would post a warning for each, but a flood of garbage must not become a flood of messages.
+/// Returns false for a buffer that is not RTP or has another payload type, and counts it. The base
+/// class would post a warning for each of these buffers, which would flood the bus.
 static bool IsOurs(GstLidarRtpDepay* self, GstBuffer* buffer) {
   State& state = *self->state;
   GstRTPBuffer rtp = GST_RTP_BUFFER_INIT;
@@ -180,7 +183,7 @@ static bool IsOurs(GstLidarRtpDepay* self, GstBuffer* buffer) {
   return false;
 }
 
-/// Warns once of a second sender with the same payload type.
+/// Warns of a second sender with the same payload type, but only once.
 static void WarnOfRival(GstLidarRtpDepay* self, guint32 ssrc, guint32 rival) {
   if (std::exchange(self->state->warned_of_rival, true)) return;
   GST_ELEMENT_WARNING(self, STREAM, WRONG_TYPE,
@@ -190,7 +193,8 @@ static void WarnOfRival(GstLidarRtpDepay* self, guint32 ssrc, guint32 rival) {
                        ssrc));
 }
 
-/// Returns true, once, if many packets came and none was readable. The caller holds the lock.
+/// Returns true if kUnreadablePackets packets were invalid and none was readable, but only once.
+/// The caller must hold the mutex.
 static bool IsUnreadable(State& state) {
   if (state.readable) return false;
   const ReceiverAccounts all = state.receiver.accounts();
@@ -216,7 +220,7 @@ static GstFlowReturn ChainList(GstPad* pad, GstObject* parent, GstBufferList* li
   return flow;
 }
 
-/// Advances `now` to the PTS.
+/// Advances `now` to the time of `pts`.
 static void Advance(State& state, lidar::Time pts) {
   if (std::exchange(state.new_segment, false)) state.shift = std::max(state.shift, state.now - pts);
   state.now = std::max(state.now, pts + state.shift);
@@ -283,7 +287,8 @@ static gboolean HandleEvent(GstRTPBaseDepayload* base, GstEvent* event) {
   return GST_RTP_BASE_DEPAYLOAD_CLASS(gst_lidar_rtp_depay_parent_class)->handle_event(base, event);
 }
 
-/// A jitterbuffer reports lost packets; this element counts lost slices itself.
+/// Ignores the event of a jitterbuffer about a lost packet, because this element counts lost slices
+/// itself.
 static gboolean PacketLost(GstRTPBaseDepayload*, GstEvent*) { return TRUE; }
 
 static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange transition) {
@@ -318,7 +323,7 @@ static void gst_lidar_rtp_depay_init(GstLidarRtpDepay* self) {
   self->state->base_chain = GST_PAD_CHAINFUNC(sink);
   gst_pad_set_chain_function(sink, Chain);
   gst_pad_set_chain_list_function(sink, ChainList);
-  // This element reorders slices, so the base class must pass packets in any order.
+  // The base class must pass packets in any order, because this element reorders them itself.
   g_object_set(self, "max-reorder", 0, nullptr);
 }
 

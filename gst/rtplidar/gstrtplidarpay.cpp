@@ -47,7 +47,7 @@ const std::array<Stat<Counters>, 7> kStats = {{
 
 struct State : PayState {
   Receipts receipts;
-  GstClockTime scan_time = 0;  // of the caps; 0: not known; guarded by mutex
+  GstClockTime scan_time = 0;  // duration of a scan by the caps; 0: not known; guarded by mutex
   RefusedCaps refused;
   GstPadQueryFunction base_src_query = nullptr;
 };
@@ -61,8 +61,8 @@ struct _GstLidarRtpPay {
 };
 
 G_DEFINE_TYPE(GstLidarRtpPay, gst_lidar_rtp_pay, GST_TYPE_RTP_BASE_PAYLOAD)
-// The element takes all caps, so with a rank it would be chosen by a search for a payloader of
-// video.
+// The rank is NONE, because the element accepts any caps. Otherwise it would be found in a search
+// for a payloader of video.
 GST_ELEMENT_REGISTER_DEFINE(rtplidarpay, "rtplidarpay", GST_RANK_NONE, gst_lidar_rtp_pay_get_type())
 
 static StructurePtr Stats(GObject* object) {
@@ -93,8 +93,8 @@ static GstFlowReturn HandleBuffer(GstRTPBasePayload* base, GstBuffer* buffer) {
   return flow;
 }
 
-/// Returns "video" if downstream takes nothing else, as with WebRTC, which has no media type for
-/// LiDAR.
+/// Returns "video" if downstream accepts no other media. An example is WebRTC, which has no media
+/// type for LiDAR.
 static const gchar* MediaDownstream(GstRTPBasePayload* base) {
   const CapsPtr allowed(gst_pad_get_allowed_caps(GST_RTP_BASE_PAYLOAD_SRCPAD(base)));
   const CapsPtr usual(
@@ -103,8 +103,8 @@ static const gchar* MediaDownstream(GstRTPBasePayload* base) {
   return any || gst_caps_can_intersect(allowed.get(), usual.get()) ? "application" : "video";
 }
 
-/// Stores the duration of a scan. Posts a new latency if aggregation makes it depend on the
-/// duration.
+/// Stores the duration of a scan. If the latency depends on it because of aggregation, posts a
+/// latency message.
 static void SetScanTime(GstRTPBasePayload* base, State& state) {
   const auto& config = *state.config;
   const GstClockTime scan_time =
@@ -173,8 +173,8 @@ static gboolean SinkEvent(GstRTPBasePayload* base, GstEvent* event) {
   return GST_RTP_BASE_PAYLOAD_CLASS(gst_lidar_rtp_pay_parent_class)->sink_event(base, event);
 }
 
-/// Returns the event for the encoder, with the bitrates reduced by our headers. Keeps unknown
-/// fields.
+/// Returns a copy of `event` for the encoder, in which bitrates do not include the headers of
+/// packets. Unknown fields are kept. `share` is the share of the encoder's bytes in the payload.
 static GstEvent* WithoutHeaders(GstEvent* event, gdouble share) {
   GstStructure* s = gst_structure_copy(gst_event_get_structure(event));
   for (const char* name : {"bitrate", "min-bitrate", "max-bitrate"}) {
@@ -187,8 +187,8 @@ static GstEvent* WithoutHeaders(GstEvent* event, gdouble share) {
   return out;
 }
 
-/// Returns true if the config must be sent at once: a receiver needs a start point, or the SSRC
-/// will change.
+/// Returns true if the config must be sent at once, because a receiver needs a start point or
+/// because the SSRC will change.
 static bool WantsConfig(GstEvent* event) {
   return GST_EVENT_TYPE(event) == GST_EVENT_CUSTOM_UPSTREAM &&
          (gst_event_has_name(event, "GstForceKeyUnit") ||
@@ -215,7 +215,7 @@ static gboolean SrcEvent(GstRTPBasePayload* base, GstEvent* event) {
   return GST_RTP_BASE_PAYLOAD_CLASS(gst_lidar_rtp_pay_parent_class)->src_event(base, event);
 }
 
-/// Returns the longest delay of an aggregate; 0 without aggregation.
+/// Returns the longest time that a slice waits in an aggregate, or 0 without aggregation.
 static GstClockTime HoldTime(GstRTPBasePayload* base) {
   State& state = *GST_LIDAR_RTP_PAY(base)->state;
   std::lock_guard lock(state.mutex);
@@ -224,8 +224,8 @@ static GstClockTime HoldTime(GstRTPBasePayload* base) {
                               : state.scan_time;
 }
 
-/// Posts a new latency if a property that HoldTime() reads has changed. The base class has
-/// max-ptime.
+/// Posts a latency message if a property that affects HoldTime() has changed. max-ptime is a
+/// property of the base class.
 static void NotifyChange(GObject* object, GParamSpec* spec) {
   if (g_strcmp0(spec->name, "aggregate") == 0 || g_strcmp0(spec->name, "max-ptime") == 0)
     PostNewLatency(object);

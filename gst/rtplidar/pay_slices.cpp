@@ -14,10 +14,11 @@ namespace lidar::gst {
 namespace {
 
 constexpr guint kClockRate = 90'000;
-// Each slice multiplies the sum of bytes by this, so the sum covers about the last second.
+// The sums of bytes are multiplied by this for each slice, so they cover about the last second.
 constexpr gdouble kShareMemory = 0.98;
 
-/// Returns an RTP buffer of `packet`. The body is a part of `slice_buffer` and is not copied.
+/// Returns an RTP buffer with `packet`. The body is not copied, but refers to memory of
+/// `slice_buffer`.
 GstBuffer* MakeBuffer(GstRTPBasePayload* base, const rtp::Packet& packet, GstBuffer* slice_buffer) {
   GstBuffer* out = gst_rtp_base_payload_allocate_output_buffer(
       base, static_cast<guint>(packet.header.size()), 0, 0);
@@ -34,7 +35,8 @@ GstBuffer* MakeBuffer(GstRTPBasePayload* base, const rtp::Packet& packet, GstBuf
   return out;
 }
 
-/// Appends `packets`, each with the number of its scan, so that a sender can drop whole scans.
+/// Converts `packets` to buffers and appends them to `list`. Each buffer has the meta of its slice,
+/// so that an element downstream can drop whole scans.
 void Append(GstRTPBasePayload* base, PayState& state, const std::vector<rtp::Packet>& packets,
             const PaySlice& slice, GstBuffer* body, GstBufferList* list) {
   for (const auto& packet : packets) {
@@ -80,7 +82,8 @@ GstFlowReturn PushList(GstRTPBasePayload* base, BufferListPtr list) {
   return gst_rtp_base_payload_push_list(base, list.release());
 }
 
-/// Returns nothing and posts an error if the buffer's meta cannot be sent.
+/// Describes the slice in `buffer`. If the slice meta is out of range, posts an error and returns
+/// nothing.
 std::optional<PaySlice> DescribeSlice(GstRTPBasePayload* base, PayState& state, GstBuffer* buffer) {
   PaySlice slice;
   if (!gst_lidar_buffer_get_slice(buffer, &slice.meta)) slice.meta.scan_id = state.unnamed_scans++;
@@ -117,14 +120,16 @@ void CountSlice(PayState& state, const PaySlice& slice, gsize size) {
   state.recent_payload_bytes *= kShareMemory;
 }
 
-/// Returns true if the slice is of the scan of the open aggregate, as a receiver requires.
+/// Returns true if the slice belongs to the same scan as the slices already in the aggregate. A
+/// receiver accepts only aggregates of a single scan.
 bool IsOfAggregate(const PayState& state, const rtp::SliceId& slice) {
   const rtp::SliceId& first = state.first_aggregated.unit.slice;
   return state.aggregator.empty() ||
          (slice.scan_number == first.scan_number && slice.count == first.count);
 }
 
-/// Adds the slice to the open aggregate. Returns false if it must be sent alone.
+/// Adds the slice to the aggregate, and pushes the aggregate when it is complete. Returns false if
+/// the slice must be sent in packets of its own.
 bool Aggregate(GstRTPBasePayload* base, PayState& state, const PaySlice& slice, ByteView bytes,
                GstFlowReturn* flow) {
   const auto ticks = GST_CLOCK_TIME_IS_VALID(slice.pts)
@@ -196,7 +201,7 @@ GstFlowReturn PaySliceBuffer(GstRTPBasePayload* base, PayState& state, GstBuffer
   }
   GstFlowReturn flow = GST_FLOW_OK;
   if (aggregate && Aggregate(base, state, *slice, map.view(), &flow)) return flow;
-  flow = PushAggregate(base, state);  // left over from before `aggregate` was turned off
+  flow = PushAggregate(base, state);  // slices may be left from before `aggregate` was disabled
   if (flow != GST_FLOW_OK) return flow;
   BufferListPtr list(gst_buffer_list_new());
   if (ConfigIsDue(state, slice->pts)) AppendConfig(base, state, *slice, list.get());

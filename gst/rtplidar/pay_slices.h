@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The streaming side of rtplidarpay: converts slices to lists of RTP buffers.
+// The part of rtplidarpay that converts slices to lists of RTP buffers.
 #pragma once
 #include <gst/rtp/gstrtpbasepayload.h>
 
@@ -24,11 +24,11 @@ struct PayCounters {
   guint64 packets = 0;
   guint64 configs = 0;
   guint64 slice_bytes = 0;
-  guint64 payload_bytes = 0;  // with our headers
-  guint64 empty = 0;          // buffers without a byte, not sent
+  guint64 payload_bytes = 0;  // includes the headers of the payload format
+  guint64 empty = 0;          // buffers without data, which are not sent
 };
 
-/// A slice to send: its unit, meta and times.
+/// A slice to be sent, with its unit, meta and times.
 struct PaySlice {
   rtp::Unit unit;
   GstLidarSlice meta{};
@@ -37,38 +37,41 @@ struct PaySlice {
 };
 
 struct PayState {
-  std::mutex mutex;  // guards members up to config_due; never held while pushing
+  // Guards the members up to config_due. It is never held while pushing.
+  std::mutex mutex;
   PaySettings settings;
   PayCounters counters;
   gdouble recent_slice_bytes = 0;
   gdouble recent_payload_bytes = 0;
   bool config_due = true;
 
-  // Only the streaming thread uses these.
+  // The members below are used by the streaming thread only.
   std::optional<rtp::StreamConfig> config;
   std::vector<std::uint8_t> config_bytes;
   std::uint8_t config_id = 0;
   GstClockTime config_sent_at = GST_CLOCK_TIME_NONE;
   rtp::ScanCounter scans{g_random_int()};
   std::optional<std::uint32_t> last_scan;
-  guint unnamed_scans = 0;  // next scan id of a buffer without a meta
+  guint unnamed_scans = 0;  // scan id for the next buffer without meta
   rtp::Aggregator aggregator;
   PaySlice first_aggregated;
-  std::optional<GstLidarBitrateBounds> bounds;  // the encoder's, without our headers
-  gdouble bounds_share = 1;                     // share at the last scaling
+  std::optional<GstLidarBitrateBounds> bounds;  // the encoder's bounds, without headers
+  gdouble bounds_share = 1;                     // SliceShare() when `bounds` was last sent
 };
 
-/// Room for payload in one RTP packet [bytes].
+/// Returns the greatest payload size of an RTP packet [bytes].
 std::size_t MaxPayload(GstRTPBasePayload* base);
-/// Payloads and pushes one encoded slice; posts an error if it cannot be sent.
+/// Converts one encoded slice to packets and pushes them. Posts an error if the slice cannot be
+/// sent.
 GstFlowReturn PaySliceBuffer(GstRTPBasePayload* base, PayState& state, GstBuffer* buffer);
 /// Pushes the slices that wait for aggregation.
 GstFlowReturn PushAggregate(GstRTPBasePayload* base, PayState& state);
-/// Recent share of the encoder's bytes in the RTP payload; a guess before the first slice.
+/// Returns the recent share of the encoder's bytes in the RTP payload. Before the first slice it is
+/// an estimate.
 gdouble SliceShare(GstRTPBasePayload* base, PayState& state);
-/// Returns the encoder's bounds plus our headers.
+/// Returns an event with the bounds of the encoder, increased by the share of the headers.
 GstEvent* BoundsWithHeaders(GstRTPBasePayload* base, PayState& state);
-/// Sends the bounds again if the headers' share has changed by more than 2 %.
+/// Sends the bounds again if the share of the headers has changed by more than 2 %.
 void UpdateBounds(GstRTPBasePayload* base, PayState& state);
 
 }  // namespace lidar::gst

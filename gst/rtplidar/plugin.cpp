@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The plugin rtplidar: clouds over RTP.
+// Registers the elements of the plugin rtplidar, which sends clouds over RTP.
 #include "gst/lidar/gstlidar.h"
 
 GST_ELEMENT_REGISTER_DECLARE(rtplidarpay)

@@ -53,7 +53,7 @@ bool Receipts::OnEvent(GstEvent* event, GstEvent** upstream) {
       slices.slices[slices.count++] = {slice.scan_id, slice.index};
     }
   }
-  // An event without slices is sent, too, because the encoder counts the receivers.
+  // An event is sent even if it lists no slices, because the encoder counts the receivers.
   *upstream = gst_lidar_event_new_slices_received(&slices);
   return true;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Converts events about packets that a receiver has to events about slices, for the encoder.
+// Converts events about packets that a receiver has received to events about slices, which the
+// encoder needs.
 #pragma once
 #include <gst/gst.h>
 
@@ -11,10 +12,10 @@ namespace lidar::gst {
 
 class Receipts {
  public:
-  /// Watches the packets that leave by `src`. This object must outlive the pad.
+  /// Observes the packets that are pushed by the pad `src`. This object must outlive the pad.
   void Watch(GstPad* src);
-  /// Sets `upstream` to the event that goes to the encoder in place of `event`. Returns false, and
-  /// sets null, if `event` is not about received packets.
+  /// If `event` is about received packets, returns true and sets `upstream` to the event that is
+  /// sent to the encoder instead. Otherwise returns false and sets `upstream` to null.
   bool OnEvent(GstEvent* event, GstEvent** upstream);
 
  private:

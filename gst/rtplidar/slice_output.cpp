@@ -32,7 +32,7 @@ GstBuffer* ToBuffer(rtp::ReceivedSlice* slice) {
   return buffer;
 }
 
-/// Warns of a coder that the next element does not accept.
+/// Warns that the next element does not accept slices of this coder.
 void WarnOfCoder(GstRTPBaseDepayload* base, const GstCaps* caps) {
   const GstStructure* s = gst_caps_get_structure(caps, 0);
   const std::string type = gst_structure_get_name(s);
@@ -55,7 +55,7 @@ bool SliceOutput::SetCapsOf(const rtp::StreamConfig& config) {
     gst_pad_set_caps(src, caps.get());
     return true;
   }
-  // This is not an error, because another sender may use another coder.
+  // This is only a warning, because another sender may use another coder.
   if (!GST_PAD_IS_FLUSHING(src) && !std::exchange(warned_of_coder_, true))
     WarnOfCoder(element_, caps.get());
   return false;
@@ -85,8 +85,8 @@ void SliceOutput::Push(std::vector<rtp::ReceivedSlice> slices, Time now) {
       }
       flush();
       asked_ = slice.config;
-      // Refused caps are offered again with the next slice, because a flushing pad refuses any
-      // caps.
+      // If the caps were refused, they are offered again with the next slice, because a pad that is
+      // flushing refuses any caps.
       config_ = SetCapsOf(*slice.config) ? slice.config : nullptr;
     }
     if (!config_) {

@@ -12,18 +12,19 @@
 
 namespace lidar::gst {
 
-/// Used by the streaming thread, except for the counts.
+/// The output of rtplidardepay. Only the streaming thread may use it, except for the counts.
 class SliceOutput {
  public:
   explicit SliceOutput(GstRTPBaseDepayload* element) : element_(element) {}
 
-  /// Pushes the slices; those of one config form a list. Drops slices of a coder that the next
-  /// element does not accept, and slices of formats that change too often. Warns once of each. The
-  /// first slice after dropped ones is marked DISCONT.
+  /// Pushes the slices. Consecutive slices with the same config are pushed as one list. Drops
+  /// slices of a coder that the next element does not accept, and slices of a format that changes
+  /// too often. Posts one warning for each of these cases. The first slice after dropped slices has
+  /// the flag DISCONT.
   void Push(std::vector<rtp::ReceivedSlice> slices, Time now);
-  /// Resets all state, counts included. The caller holds the element's lock.
+  /// Resets all members, including the counts. The caller must hold the lock of the element.
   void Reset();
-  /// Call it if the times of Push() begin anew.
+  /// Must be called if the times that are passed to Push() start anew.
   void ResetTime() { changes_ = {kFormatChanges, kFormatChangePeriod}; }
 
   guint64 not_accepted() const { return not_accepted_; }
@@ -35,16 +36,16 @@ class SliceOutput {
   bool MayChangeTo(const Config& config, Time now);
   bool SetCapsOf(const rtp::StreamConfig& config);
 
-  // A change of format costs downstream much more than the bytes of a slice: caps of up to 200 kB,
-  // an event per queue, a channel of a recording, a NATS message.
+  // A change of the format is expensive for downstream, compared to the bytes of a slice: it takes
+  // caps of up to 200 kB, an event in each queue, a channel in a recording, and a NATS message.
   static constexpr int kFormatChanges = 8;
   static constexpr Duration kFormatChangePeriod = std::chrono::seconds(1);
 
   GstRTPBaseDepayload* element_;
-  Config config_;  // of the caps on the src pad
-  Config asked_;   // of the caps that were offered last
+  Config config_;  // config of the current caps on the src pad
+  Config asked_;   // config of the caps that were offered last
   Allowance changes_{kFormatChanges, kFormatChangePeriod};
-  bool discont_ = false;  // slices before the next one were dropped
+  bool discont_ = false;  // true if slices before the next slice were dropped
   bool warned_of_coder_ = false;
   bool warned_of_changes_ = false;
   std::atomic<guint64> not_accepted_{0};
