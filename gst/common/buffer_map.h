@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A mapped buffer that unmaps itself, and the copy of flags, times and metas.
+// Maps buffers with automatic unmapping, and copies their flags, times and metas.
 #pragma once
 #include <gst/gst.h>
 
@@ -7,7 +7,8 @@
 
 namespace lidar::gst {
 
-/// Maps a buffer, which it does not own, for the lifetime of this object. Test it before use.
+/// Maps a buffer for the lifetime of this object. It does not own the buffer. Check operator bool()
+/// before use, because mapping may fail.
 class BufferMap {
  public:
   BufferMap(GstBuffer* buffer, GstMapFlags flags)
@@ -29,7 +30,7 @@ class BufferMap {
   GstBuffer* buffer_;
 };
 
-/// Gives `output` the flags, times and metas of `input`.
+/// Copies flags, times and metas from `input` to `output`.
 inline void CopyMetadata(GstBuffer* output, GstBuffer* input) {
   constexpr auto kAll = static_cast<GstBufferCopyFlags>(
       GST_BUFFER_COPY_FLAGS | GST_BUFFER_COPY_TIMESTAMPS | GST_BUFFER_COPY_META);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Caps as text, and back from untrusted text. GStreamer's own parser never gets untrusted text,
-// because each level of nesting doubles the parser's time.
+// Converts caps to text, and untrusted text to caps. Untrusted text is not parsed by GStreamer,
+// because the time of GStreamer's parser doubles with each level of nesting.
 #pragma once
 #include <gst/gst.h>
 
@@ -17,7 +17,7 @@
 namespace lidar::gst {
 namespace caps_text {
 
-/// Returns nothing if a value of the array is not a double.
+/// Converts an array of doubles. Returns nothing if a value in it is not a double.
 inline std::optional<ScalarCaps::Value> ToDoubles(const GValue* array) {
   ScalarCaps::Doubles values;
   for (guint i = 0; i < gst_value_array_get_size(array); ++i) {
@@ -40,7 +40,7 @@ inline void SetDoubles(GstStructure* s, const gchar* name, const ScalarCaps::Dou
   gst_structure_take_value(s, name, &array);
 }
 
-/// Returns nothing for a value of a type that ScalarCaps lacks.
+/// Returns nothing if ScalarCaps does not support the type of the value.
 inline std::optional<ScalarCaps::Value> ToScalar(const GValue* value) {
   using Value = ScalarCaps::Value;
   const GType type = G_VALUE_TYPE(value);
@@ -92,8 +92,8 @@ inline void SetScalar(GstStructure* s, const gchar* name, const ScalarCaps::Valu
 
 }  // namespace caps_text
 
-/// Returns nothing if `caps` are not those of one stream in the system's memory with scalar fields:
-/// `why` then has the reason in words for a user.
+/// Converts caps of one stream in system memory with scalar fields. For any other caps, returns
+/// nothing and sets `why` to a reason for the user.
 inline std::optional<ScalarCaps> ToScalarCaps(const GstCaps* caps, std::string* why = nullptr) {
   std::string ignored;
   std::string& reason = why != nullptr ? *why : ignored;
@@ -126,14 +126,14 @@ inline CapsPtr FromScalarCaps(const ScalarCaps& scalar) {
   return caps;
 }
 
-/// Returns nothing if CapsFromText() would refuse the text: `why` then has the reason in words for
-/// a user.
+/// Converts caps to text. If CapsFromText() could not parse the text, returns nothing and sets
+/// `why` to a reason for the user.
 inline std::optional<std::string> CapsToText(const GstCaps* caps, std::string* why = nullptr) {
   const auto scalar = ToScalarCaps(caps, why);
   return scalar ? scalar->ToText() : std::nullopt;
 }
 
-/// Returns fixed caps, or null if `text` is not caps of scalar fields.
+/// Returns fixed caps, or null if `text` does not describe caps with scalar fields.
 inline CapsPtr CapsFromText(std::string_view text) {
   const auto scalar = ScalarCaps::Parse(text);
   return scalar ? FromScalarCaps(*scalar) : nullptr;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Certificates in PEM files: our own with its private key, and the peer's, which alone is trusted.
+// Reads certificates from PEM files: our own with its private key, and the peer's, which is the
+// only certificate that is trusted.
 #pragma once
 #include <glib.h>
 
@@ -8,11 +9,11 @@
 namespace lidar::gst {
 
 struct Certificates {
-  std::string own;   // certificate and private key, PEM
-  std::string peer;  // as CertificateIn() returns it
+  std::string own;   // the certificate and the private key in PEM
+  std::string peer;  // result of CertificateIn()
 };
 
-/// Returns the text between the lines that begin and end the first certificate, without white
+/// Returns the first certificate in `pem`, without the lines before and after it, and without white
 /// space.
 inline std::string CertificateIn(const std::string& pem) {
   static const std::string kBegin = "-----BEGIN CERTIFICATE-----";
@@ -42,7 +43,7 @@ inline bool ReadPem(const std::string& path, bool with_key, std::string* pem, st
   return false;
 }
 
-/// Reads both certificates from files. Returns false and sets `error` on failure; `error` never
+/// Reads both certificates from files. If it fails, returns false and sets `error`, which never
 /// contains the key.
 inline bool ReadCertificates(const std::string& own, const std::string& peer,
                              Certificates* certificates, std::string* error) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Common parts of encoders and decoders: their two pads, and statistics at an interval.
+// The common parts of encoders and decoders: their two pads, and messages with statistics.
 #pragma once
 #include <optional>
 #include <utility>
@@ -13,7 +13,8 @@ namespace lidar::gst {
 
 class CoderPads {
  public:
-  /// Call it from constructed(), because the subclass has the pad templates.
+  /// Adds the pads. Must be called in constructed(), because the pad templates belong to the
+  /// subclass.
   void Create(GObject* element, GstPadChainFunction chain, GstPadEventFunction sink_event) {
     sink_ = AddPad(element, "sink");
     gst_pad_set_chain_function(sink_, chain);
@@ -24,7 +25,7 @@ class CoderPads {
   GstPad* sink() const { return sink_; }
   GstPad* src() const { return src_; }
 
-  /// Call it with true if the next buffer does not continue the last one.
+  /// Sets whether the next output buffer gets the flag DISCONT.
   void set_discont(bool discont) { discont_ = discont; }
 
   GstFlowReturn Push(BufferPtr output, GstBuffer* input) {
@@ -33,10 +34,10 @@ class CoderPads {
     return gst_pad_push(src_, output.release());
   }
 
-  /// Sends a gap, so that downstream does not wait for an output of `input`.
+  /// Pushes no output for `input`. Sends a GAP event instead, so that downstream does not wait.
   GstFlowReturn LeaveOut(GstBuffer* input) {
     discont_ = true;
-    // A gap before the first caps means nothing downstream.
+    // A GAP event before the first caps would have no meaning for downstream.
     if (GST_BUFFER_PTS_IS_VALID(input) && gst_pad_has_current_caps(src_))
       gst_pad_push_event(src_,
                          gst_event_new_gap(GST_BUFFER_PTS(input), GST_BUFFER_DURATION(input)));
@@ -49,8 +50,8 @@ class CoderPads {
   bool discont_ = false;
 };
 
-/// Resets the stream of a coder on its way to READY. The base class calls it once its pads are
-/// inactive.
+/// Resets the stream of a coder when it changes to READY. It is called after the pads have been
+/// deactivated.
 template <class Coder, class Class>
 void EndStream(Coder* coder, const Class* klass) {
   coder->state->stream = {};
@@ -58,11 +59,11 @@ void EndStream(Coder* coder, const Class* klass) {
   if (klass->reset != nullptr) klass->reset(coder);
 }
 
-/// Posts statistics as element messages.
+/// Posts statistics as element messages at an interval.
 class MessageTimer {
  public:
-  /// Posts `stats` if `interval` (0: never) has passed since the last post, or since the first call
-  /// if there was no post.
+  /// Posts `stats` if `interval` has passed since the last message. The first interval starts at
+  /// the first call. If `interval` is 0, never posts.
   void Post(GstElement* element, Duration interval, StructurePtr (*stats)(GObject*)) {
     const gint64 now_us = g_get_monotonic_time();
     if (!last_us_) last_us_ = now_us;

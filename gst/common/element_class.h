@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What the registry shows of an element, and its pads.
+// Describes elements for the registry, and adds their pads.
 #pragma once
 #include <gst/gst.h>
 
@@ -18,10 +18,10 @@ struct PadRow {
   GstPadDirection direction;
   const char* caps;
   GstPadPresence presence = GST_PAD_ALWAYS;
-  GType type = G_TYPE_NONE;  // of the pads; NONE: GstPad
+  GType type = G_TYPE_NONE;  // type of the pads; NONE for GstPad
 };
 
-/// Documents an element class and installs its pad templates.
+/// Sets the description of an element class, and adds its pad templates.
 inline void Describe(gpointer klass, const ElementInfo& info,
                      std::initializer_list<PadRow> pads = {}) {
   auto* element = GST_ELEMENT_CLASS(klass);
@@ -36,7 +36,7 @@ inline void Describe(gpointer klass, const ElementInfo& info,
                                         info.description, "gst-lidar");
 }
 
-/// Adds the pad of the template `name`; the element owns it.
+/// Adds a pad with the template `name`. The element owns the pad.
 inline GstPad* AddPad(gpointer element, const char* name) {
   auto* klass = GST_ELEMENT_GET_CLASS(element);
   GstPad* pad = gst_pad_new_from_template(gst_element_class_get_pad_template(klass, name), name);

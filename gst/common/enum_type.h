@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The GTypes of enumerations that are properties.
+// Registers the GTypes of enumerations that are used as properties.
 #pragma once
 #include <gst/gst.h>
 
 namespace lidar::gst {
 
-/// A value of an enumeration, as GObject keeps it.
+/// Converts a value of an enumeration to the integer that GObject stores.
 template <class E>
 constexpr gint Int(E value) {
   return static_cast<gint>(value);
 }
 
-/// Registers an enumeration with a new name, and documents it with the plugin. `values` have static
-/// storage and end with an empty row.
+/// Registers an enumeration under a new name, and adds it to the documentation of the plugin.
+/// `values` must have static storage and end with an empty row.
 inline GType RegisterEnum(const char* name, const GEnumValue* values) {
   const GType type = g_enum_register_static(name, values);
   gst_type_mark_as_plugin_api(type, static_cast<GstPluginAPIFlags>(0));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Fields of a struct as GValues, for tables of properties and statistics.
+// Accesses fields of structs as GValues, for tables of properties and statistics.
 #pragma once
 #include <gst/gst.h>
 
@@ -14,7 +14,8 @@
 
 namespace lidar::gst {
 
-/// Further parameters of a property. A range of {0, 0} means that of the type.
+/// The parameters of a property besides its type and default. If `min` and `max` are both 0, the
+/// property accepts all values of its type.
 struct SpecArgs {
   const char* name;
   const char* blurb;
@@ -23,11 +24,12 @@ struct SpecArgs {
   gdouble max = 0;
 };
 
-/// Maps a C++ type to a GValue: Spec() makes a property of it, Get() and Set() copy values.
+/// Defines how a C++ type is represented as a GValue. Spec() creates a property of this type, and
+/// Get() and Set() copy values.
 template <class T, class = void>
 struct Kind;
 
-/// Numbers, which GObject stores as `Wire`.
+/// The implementation for numbers. GObject stores them as `Wire`.
 template <class Wire, GType type, auto new_spec, auto get_value, auto set_value>
 struct NumberKind {
   static GType Type() { return type; }
@@ -61,7 +63,7 @@ template <>
 struct Kind<gdouble> : NumberKind<gdouble, G_TYPE_DOUBLE, g_param_spec_double, g_value_get_double,
                                   g_value_set_double> {};
 
-/// A duration is a guint64 in ns; a negative one reads as 0.
+/// A duration is a guint64 in ns. A negative duration is read as 0.
 template <>
 struct Kind<Duration> {
   static GType Type() { return G_TYPE_UINT64; }
@@ -75,7 +77,7 @@ struct Kind<Duration> {
   static guint64 Ns(Duration d) { return static_cast<guint64>(std::max<gint64>(d.count(), 0)); }
 };
 
-/// A size is a number of bytes: a guint as a property, a guint64 in statistics.
+/// A size in bytes. It is a guint in properties, and a guint64 in statistics.
 template <>
 struct Kind<DataSize> {
   static GType Type() { return G_TYPE_UINT64; }
@@ -116,7 +118,7 @@ struct Kind<bool> {
   static void Get(bool value, GValue* v) { g_value_set_boolean(v, value); }
 };
 
-/// An empty string reads as NULL, as in GStreamer's own elements.
+/// A string. An empty string is read as NULL, as in GStreamer's own elements.
 template <>
 struct Kind<std::string> {
   static GType Type() { return G_TYPE_STRING; }
@@ -132,7 +134,7 @@ struct Kind<std::string> {
     g_value_set_string(v, value.empty() ? nullptr : value.c_str());
   }
 };
-/// Text in static storage, for read-only properties and for statistics.
+/// A text in static storage, for read-only properties and for statistics.
 template <>
 struct Kind<const char*> {
   static GType Type() { return G_TYPE_STRING; }
@@ -142,7 +144,8 @@ struct Kind<const char*> {
   static void Get(const char* value, GValue* v) { g_value_set_static_string(v, value); }
 };
 
-/// Returns the GType of a boxed type or object. Specialised for each type that a table uses.
+/// Returns the GType of a boxed type or an object type. It has a specialisation for each type that
+/// is used in a table.
 template <class T>
 GType GTypeOf();
 template <>
@@ -154,8 +157,8 @@ inline GType GTypeOf<GstStructure>() {
   return GST_TYPE_STRUCTURE;
 }
 
-/// Boxed types and objects. A shared_ptr is a field that can be set; a unique_ptr is a function's
-/// result.
+/// Boxed types and objects. A field that can be set is a shared_ptr. The result of a function is a
+/// unique_ptr.
 template <class Pointer>
 struct Kind<Pointer, std::void_t<typename Pointer::element_type, decltype(Pointer().get())>> {
   using T = typename Pointer::element_type;
@@ -182,21 +185,23 @@ struct Kind<Pointer, std::void_t<typename Pointer::element_type, decltype(Pointe
 using SharedCaps = std::shared_ptr<GstCaps>;
 using SharedStructure = std::shared_ptr<GstStructure>;
 
-/// The field at the end of a path through nested structs:
+/// A path through nested structs to a field, for example
 /// At<&Settings::parameters, &Parameters::mss>.
 template <auto... path>
 struct AtPath {};
 template <auto... path>
 inline constexpr AtPath<path...> At{};
 
-/// An enumeration, of a C++ type of its own or a gint; `type` gives its GType.
+/// A field with an enumeration. Its C++ type is an enumeration type or gint. `type` returns its
+/// GType.
 template <class S, class E = gint>
 struct EnumField {
   E S::*field;
   GType (*type)();
 };
 
-/// A field of `S`, a function of an S or of its object, or a property of the object's child.
+/// Describes how a value is read and written. The value is a field of an `S`, the result of a
+/// function of an `S` or of its object, or a property of a child of the object.
 template <class S>
 class Field {
  public:
@@ -217,11 +222,12 @@ class Field {
   Field(const EnumField<S, E>& e)
       : member_(reinterpret_cast<Member>(e.field)), type_(e.type), ops_(&kEnum<E>) {}
 
-  /// The field of `row`, in the struct at the end of the path. The row has static storage.
+  /// A field that `row` describes, in the struct at the end of the path. `row` must have static
+  /// storage.
   template <class Row, auto... path>
   Field(const Row* row, AtPath<path...>) : row_(row), ops_(&kWithin<Row, ByPath<path...>>) {}
-  /// `row` is a row of the child's table; its default is that of `defaults`. Both have static
-  /// storage.
+  /// A property of a child. `row` describes this property in the table of the child. The default
+  /// value is the field of `defaults`. `row` and `defaults` must have static storage.
   template <class Row>
   Field(const Row* row, const typename Row::Struct* defaults, GObject* (*child)(GObject*))
       : function_(reinterpret_cast<Function>(child)),
@@ -231,17 +237,17 @@ class Field {
         ops_(row->field.read_only() ? &kChildRead<Row> : &kChild<Row>) {}
 
   bool read_only() const { return ops_->set == nullptr; }
-  /// Returns true if Get() and Set() use the object instead of the struct.
+  /// Returns true if Get() and Set() use the object and not the struct.
   bool of_object() const { return of_object_; }
 
-  /// The GType of values in statistics.
+  /// Returns the GType of the value in statistics.
   GType type() const { return ops_->type(*this); }
   GParamSpec* Spec(const SpecArgs& a, const S& initial) const {
     return ops_->spec(*this, a, initial);
   }
   void Set(S* s, GObject* object, const GValue* v) const { ops_->set(*this, s, object, v); }
   void Get(const S* s, GObject* object, GValue* v) const { ops_->get(*this, s, object, v); }
-  /// Adds the count in `part` to that in `sum`. Does nothing for a field that is not a number.
+  /// Adds the value in `part` to the value in `sum`. Does nothing if the field is not a number.
   void Add(const S& part, S* sum) const {
     if (ops_->add != nullptr) ops_->add(*this, part, sum);
   }
@@ -249,13 +255,13 @@ class Field {
  private:
   using Member = char S::*;
   using Function = void (*)();
-  /// Operations that differ by type. They cast the stored pointers back to their types.
+  /// The operations for a type. They cast the stored pointers back to their original types.
   struct Ops {
     GType (*type)(const Field&);
     GParamSpec* (*spec)(const Field&, const SpecArgs&, const S&);
-    void (*set)(const Field&, S*, GObject*, const GValue*);  // NULL: read-only
+    void (*set)(const Field&, S*, GObject*, const GValue*);  // NULL if read-only
     void (*get)(const Field&, const S*, GObject*, GValue*);
-    void (*add)(const Field&, const S& part, S* sum);  // NULL: not a number
+    void (*add)(const Field&, const S& part, S* sum);  // NULL if not a number
   };
 
   template <class T>
@@ -309,7 +315,7 @@ class Field {
         Kind<T>::Get(Way::Read(f, s, object), v);
       },
       nullptr};
-  // A function can use later declarations; a lambda that initialises a constant cannot.
+  // This is a function, because a lambda that initialises a constant cannot use later declarations.
   static GType EnumType(const Field& f) { return f.type_(); }
   template <class E>
   static constexpr Ops kEnum = {EnumType,

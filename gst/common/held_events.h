@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Holds sticky events of a pad whose caps come from the data of the first buffer.
+// Holds back sticky events on a pad whose caps are not known before the first buffer.
 #pragma once
 #include <algorithm>
 #include <utility>
@@ -9,11 +9,13 @@
 
 namespace lidar::gst {
 
-/// Events leave after the caps, in order of arrival. A new event replaces an older one of its type.
+/// A queue of events that are pushed after the caps, in the order of their arrival. A new event
+/// replaces an earlier event of the same type.
 class HeldEvents {
  public:
-  /// Holds a sticky event that belongs after the caps. Drops a gap, which has no meaning before
-  /// caps. Returns false, and leaves `event` to the caller, for other events.
+  /// Takes a sticky event that must be pushed after the caps. Also takes a GAP event and drops it,
+  /// because it has no meaning before the caps. For any other event returns false, and the caller
+  /// keeps the event.
   bool Take(GstEvent* event) {
     const GstEventType type = GST_EVENT_TYPE(event);
     const bool waits = GST_EVENT_IS_SERIALIZED(event) && GST_EVENT_IS_STICKY(event) &&
@@ -31,20 +33,21 @@ class HeldEvents {
     return waits || type == GST_EVENT_GAP;
   }
 
-  /// Pushes the caps, then the held events. If downstream refuses the caps, GStreamer sends them
-  /// again before the next buffer, and the push of that buffer returns the error.
+  /// Pushes the caps and then the held events. If downstream refuses the caps, GStreamer sends them
+  /// again before the next buffer. Then the push of this buffer returns the error.
   void PushCapsTo(GstPad* pad, GstCaps* caps) {
     gst_pad_push_event(pad, gst_event_new_caps(caps));
     PushTo(pad);
   }
 
-  /// Pushes the held events, for example before an EOS without caps. A push may flush the pad and
-  /// so call this object again.
+  /// Pushes the held events, for example before an EOS if no caps were sent. The push may call this
+  /// object again, because it may flush the pad.
   void PushTo(GstPad* pad) {
     for (EventPtr& event : std::exchange(held_, {})) gst_pad_push_event(pad, event.release());
   }
 
-  /// A flush ends the segment. Tags and other events stay, because they come only once.
+  /// Drops a held segment, because a flush ends it. Keeps tags and all other events, because they
+  /// are sent only once.
   void OnFlush() {
     Drop([](GstEvent* held) { return GST_EVENT_TYPE(held) == GST_EVENT_SEGMENT; });
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The upstream query "lidar-history", which a source answers if its server keeps the stream.
+// The query "lidar-history". A source answers it if its server stores the stream.
 #pragma once
 #include <gst/gst.h>
 
@@ -18,18 +18,18 @@ struct UnrefSample {
 using SamplePtr = std::unique_ptr<GstSample, UnrefSample>;
 
 struct HistoryQuestion {
-  GstClockTime time = GST_CLOCK_TIME_NONE;  // earlier buffers may be left out [ns since 1970]
-  guint64 position = 0;                     // where the answer begins; unused if there is a time
-  guint64 most_bytes = 0;  // approximate size of the buffers; 0: asks for the times only
+  GstClockTime time = GST_CLOCK_TIME_NONE;  // earlier buffers may be omitted [ns since 1970]
+  guint64 position = 0;                     // where the answer begins; ignored if `time` is set
+  guint64 most_bytes = 0;                   // approximate limit of the size; 0: only times
 };
 
 struct HistoryAnswer {
-  guint64 from = 0;  // capture times of all that is kept [ns since 1970]; 0: nothing
+  guint64 from = 0;  // capture time of the oldest stored buffer [ns since 1970]; 0: none
   guint64 to = 0;
-  std::vector<SamplePtr> samples;  // caps, buffers with metas; a buffer's offset is its position
-  guint64 position = 0;            // where the next answer begins
-  bool ended = true;               // nothing newer is kept yet
-  guint64 damaged = 0;             // buffers that were left out
+  std::vector<SamplePtr> samples;  // caps, and buffers with metas; the offset is the position
+  guint64 position = 0;            // `position` for the next question
+  bool ended = true;               // true if no newer buffer is stored yet
+  guint64 damaged = 0;             // number of buffers that were omitted
 };
 
 constexpr const char* kHistoryQuery = "lidar-history";
@@ -42,7 +42,7 @@ inline QueryPtr NewHistoryQuery(const HistoryQuestion& question) {
                         question.most_bytes, nullptr)));
 }
 
-/// Returns nothing if `query` is of another kind.
+/// Returns nothing if `query` is not a history query.
 inline std::optional<HistoryQuestion> ParseHistoryQuestion(GstQuery* query) {
   const GstStructure* s = gst_query_get_structure(query);
   if (GST_QUERY_TYPE(query) != GST_QUERY_CUSTOM || s == nullptr ||

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Caps of the samples of an inertial measurement unit.
+// The caps of samples of an inertial measurement unit.
 #pragma once
 #include <gst/gst.h>
 
@@ -19,7 +19,7 @@ inline CapsPtr ImuCaps() {
                                      kImuFields, nullptr));
 }
 
-using ImuToSensor = std::array<double, 16>;  // row-major [m]
+using ImuToSensor = std::array<double, 16>;  // row-major, translation in metres
 inline CapsPtr ImuCaps(const ImuToSensor& imu_to_sensor) {
   CapsPtr caps = ImuCaps();
   caps_text::SetDoubles(gst_caps_get_structure(caps.get(), 0), "imu-to-sensor",

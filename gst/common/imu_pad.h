@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The pad `imu` of a source of clouds, with the samples of an inertial measurement unit.
+// The pad `imu` of a source of clouds. It pushes the samples of an inertial measurement unit.
 #pragma once
 #include <gst/base/gstbasesrc.h>
 
@@ -15,8 +15,9 @@
 
 namespace lidar::gst {
 
-/// The stream joins the group of the clouds and ends with them. An unlinked or flushing pad is not
-/// an error.
+/// Pushes samples on a pad that it adds to `source`. The stream has the same group id as the clouds
+/// on the pad src, and ends when the clouds end. If the pad is not linked or is flushing, this is
+/// not an error.
 class ImuPad {
  public:
   explicit ImuPad(GstBaseSrc* source) : source_(source) {
@@ -31,8 +32,8 @@ class ImuPad {
   ImuPad(const ImuPad&) = delete;
   ImuPad& operator=(const ImuPad&) = delete;
 
-  /// Pushes `samples`, unless there are none or they precede the segment. The first call adds the
-  /// pad. `pts` is that of the first sample.
+  /// Pushes `samples`. Does nothing if there are none, or if `pts` is before the segment. `pts` is
+  /// the time of the first sample. The first call adds the pad.
   void Push(const std::vector<ImuSample>& samples, const ImuToSensor& imu_to_sensor,
             GstClockTime pts) {
     if (samples.empty() || pts < segment_.start) return;
@@ -53,15 +54,15 @@ class ImuPad {
     gst_pad_push(pad_, buffer);
   }
 
-  /// Sets the segment of the next samples. Do not call it while Push() runs.
+  /// Sets the segment of later samples. Must not be called while Push() runs.
   void SetSegment(const GstSegment& segment) {
     segment_ = segment;
     segment_pending_ = true;
     last_pts_ = 0;
   }
-  /// Call it before a flushing seek of the clouds, from any thread.
+  /// Starts a flush. Must be called before a flushing seek on the clouds. Any thread may call it.
   void StartFlush(guint32 seqnum) { Flush(true, gst_event_new_flush_start(), seqnum); }
-  /// Ends a flush. Call it before clouds flow again, from any thread.
+  /// Ends a flush. Must be called before clouds are pushed again. Any thread may call it.
   void StopFlush() {
     std::unique_lock lock(mutex_);
     if (!flushing_) return;
@@ -84,14 +85,15 @@ class ImuPad {
       pad_ = pad;
     }
     gst_pad_push_event(pad_, StreamStart(pad_));
-    // The probe ends the samples, too, when the base class ends the clouds by itself (num-buffers,
-    // EOS sent to the element).
+    // The base class may end the clouds by itself, because of num-buffers or of an EOS event that
+    // was sent to the element. The probe ends the samples in this case, too.
     end_of_clouds_ =
         gst_pad_add_probe(GST_BASE_SRC_PAD(source_), GST_PAD_PROBE_TYPE_EVENT_DOWNSTREAM,
                           EndWithClouds, gst_object_ref(pad_), gst_object_unref);
   }
 
-  /// Pushes the events before the pad is added, so that a handler of pad-added finds them on it.
+  /// Pushes the first events before the pad is added, so that a handler of pad-added finds them on
+  /// the pad.
   void Prepare(const ImuToSensor& imu_to_sensor) {
     const bool first = pad_ == nullptr;
     if (first) MakePad();
@@ -135,7 +137,8 @@ class ImuPad {
     return GST_PAD_PROBE_OK;
   }
 
-  /// Samples are not delayed. The pad src answers queries about positions and times.
+  /// Answers queries. Samples have no latency. Queries about positions and times are passed to the
+  /// pad src.
   static gboolean Query(GstPad* pad, GstObject* parent, GstQuery* query) {
     switch (GST_QUERY_TYPE(query)) {
       case GST_QUERY_LATENCY:
@@ -152,21 +155,22 @@ class ImuPad {
     }
   }
 
-  /// A seek applies to clouds and samples.
+  /// Passes a seek to the pad src, because it applies to clouds and samples.
   static gboolean Event(GstPad* pad, GstObject* parent, GstEvent* event) {
     if (GST_EVENT_TYPE(event) != GST_EVENT_SEEK) return gst_pad_event_default(pad, parent, event);
     return gst_pad_send_event(GST_BASE_SRC_PAD(parent), event);
   }
 
   GstBaseSrc* const source_;
-  std::mutex mutex_;  // guards flushing_, and pad_ against other threads
+  // Guards flushing_. Also guards pad_ when other threads use it.
+  std::mutex mutex_;
   bool flushing_ = false;
   guint32 flush_seqnum_ = 0;
   GstPad* pad_ = nullptr;  // owned by the element
   GstSegment segment_{};
   bool segment_pending_ = true;
-  gulong end_of_clouds_ = 0;     // probe on the pad src, set with pad_
-  ImuToSensor imu_to_sensor_{};  // of the caps
+  gulong end_of_clouds_ = 0;     // id of the probe on the pad src, set with pad_
+  ImuToSensor imu_to_sensor_{};  // as in the current caps
   GstClockTime last_pts_ = 0;
 };
 

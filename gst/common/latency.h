@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Latency queries, read and answered.
+// Reads latency queries and answers them.
 #pragma once
 #include <gst/gst.h>
 
@@ -8,7 +8,7 @@ namespace lidar::gst {
 struct Latency {
   bool live = false;
   GstClockTime min = 0;
-  GstClockTime max = 0;  // NONE: no limit
+  GstClockTime max = 0;  // NONE for no limit
 };
 
 inline Latency ReadLatency(GstQuery* query) {
@@ -19,7 +19,7 @@ inline Latency ReadLatency(GstQuery* query) {
   return latency;
 }
 
-/// Adds the element's own latency [ns] to upstream's answer.
+/// Adds the element's own latency [ns] to the answer of upstream.
 inline void AddLatency(GstQuery* query, GstClockTime own) {
   const Latency upstream = ReadLatency(query);
   gst_query_set_latency(
@@ -27,7 +27,7 @@ inline void AddLatency(GstQuery* query, GstClockTime own) {
       GST_CLOCK_TIME_IS_VALID(upstream.max) ? upstream.max + own : GST_CLOCK_TIME_NONE);
 }
 
-/// Has the pipeline ask for the latency anew.
+/// Posts a message that makes the pipeline query the latency again.
 inline void PostNewLatency(gpointer element) {
   gst_element_post_message(GST_ELEMENT(element), gst_message_new_latency(GST_OBJECT(element)));
 }

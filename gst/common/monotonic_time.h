@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The system clock for times that no pipeline clock gives.
+// The system clock, for times that do not come from a pipeline clock.
 #pragma once
 #include <glib.h>
 

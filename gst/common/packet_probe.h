@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Probes that see each packet, alone or in a list.
+// Pad probes that handle each packet, whether it is pushed alone or in a list.
 #pragma once
 #include <gst/gst.h>
 
@@ -10,7 +10,7 @@ namespace lidar::gst {
 constexpr auto kPacketProbe =
     static_cast<GstPadProbeType>(GST_PAD_PROBE_TYPE_BUFFER | GST_PAD_PROBE_TYPE_BUFFER_LIST);
 
-/// Replaces each packet by the result of `map`, or drops the packet if the result is NULL.
+/// Replaces each packet by the result of `map`. If the result is NULL, the packet is dropped.
 template <class Map>
 GstPadProbeReturn MapPackets(GstPadProbeInfo* info, Map map) {
   if ((info->type & GST_PAD_PROBE_TYPE_BUFFER) != 0) {

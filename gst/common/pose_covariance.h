@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Covariances of poses: as fields of structures, and those of nav_msgs/msg/Odometry, which also
-// show whether a pose is tracked.
+// Covariances of poses, as fields of structures and as in nav_msgs/msg/Odometry. In the latter they
+// also show whether a pose is tracked.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -10,9 +10,9 @@
 
 namespace lidar::gst {
 
-using Covariance = std::array<double, 36>;  // of x, y, z and the turns about them
+using Covariance = std::array<double, 36>;  // of x, y, z and the rotations about these axes
 
-/// A structure's field `covariance` has 36 doubles.
+/// Sets the field `covariance` of a structure to 36 doubles.
 inline void SetCovariance(const double* covariance, GstStructure* s) {
   GValue numbers = G_VALUE_INIT;
   gst_value_array_init(&numbers, 36);
@@ -25,7 +25,7 @@ inline void SetCovariance(const double* covariance, GstStructure* s) {
   gst_structure_take_value(s, "covariance", &numbers);
 }
 
-/// Returns false if there is no such field.
+/// Reads the field `covariance`. Returns false if it is missing or is not 36 doubles.
 inline bool GetCovariance(const GstStructure* s, double* covariance) {
   const GValue* numbers = gst_structure_get_value(s, "covariance");
   if (numbers == nullptr || !GST_VALUE_HOLDS_ARRAY(numbers) ||
@@ -39,7 +39,8 @@ inline bool GetCovariance(const GstStructure* s, double* covariance) {
   return true;
 }
 
-/// Variances so large that such a pose has no effect in a weighted mean [m^2, rad^2].
+/// Variances of poses that are not tracked [m^2, rad^2]. They are so large that these poses have no
+/// effect in a weighted mean.
 inline constexpr double kDegenerateVariance = 1e3;
 inline constexpr double kUnknownVariance = 1e6;
 
@@ -47,8 +48,9 @@ inline void SetVariances(double position, double orientation, Covariance* covari
   for (std::size_t i = 0; i < 6; ++i) (*covariance)[i * 7] = i < 3 ? position : orientation;
 }
 
-/// The covariance also carries the GstLidarTracking, for which ROS has no field. Zeros mean an
-/// unknown covariance. `measured` is the covariance of a tracked pose.
+/// Returns the covariance for a pose with the state `tracking`. ROS has no field for this state, so
+/// it is encoded in the covariance. `measured` is the covariance of a tracked pose; zeros mean that
+/// it is not known.
 inline Covariance CovarianceOf(std::uint64_t tracking, const Covariance& measured = {}) {
   Covariance covariance{};
   if (tracking <= GST_LIDAR_TRACKING_OK) return measured;
@@ -65,7 +67,8 @@ inline GstLidarTracking TrackingOf(const Covariance& covariance) {
                                               : GST_LIDAR_TRACKING_OK;
 }
 
-/// Covariance of an unknown velocity, so that the velocity's zeros are not taken for a standstill.
+/// Returns the covariance of a velocity that is not known. Otherwise the zeros of this velocity
+/// would mean that the sensor does not move.
 inline Covariance NoVelocity() {
   Covariance covariance{};
   SetVariances(kUnknownVariance, kUnknownVariance, &covariance);

@@ -16,18 +16,18 @@
 
 namespace lidar::gst {
 
-/// A property. The default is the field's initialiser. A property whose `field` is a function that
-/// reads the value is read-only.
+/// A property of an element. Its default is the initialiser of the field. If `field` is a function,
+/// the property is read-only.
 template <class Settings>
 struct Property {
   using Struct = Settings;
 
   const char* name;
-  const char* blurb;  // names its unit in brackets
+  const char* blurb;  // contains the unit in brackets
   Field<Settings> field;
-  gdouble min = 0;  // both 0: all that the type holds
+  gdouble min = 0;  // if both are 0, all values of the type are allowed
   gdouble max = 0;
-  // GST_PARAM_MUTABLE_PLAYING if a change takes effect at once; a property with G_PARAM_WRITABLE
+  // GST_PARAM_MUTABLE_PLAYING if a change is effective at once. With G_PARAM_WRITABLE, the property
   // cannot be read.
   gint mutability = GST_PARAM_MUTABLE_READY;
 
@@ -39,7 +39,7 @@ struct Property {
   }
 };
 
-/// The row of `table` called `name`. Ends the program if the table lacks it.
+/// Returns the row of `table` with this name. Ends the program if there is none.
 template <class Settings, std::size_t N>
 const Property<Settings>* FindRow(const std::array<Property<Settings>, N>& table,
                                   std::string_view name) {
@@ -48,9 +48,9 @@ const Property<Settings>* FindRow(const std::array<Property<Settings>, N>& table
   g_error("no property row is called \"%s\"", std::string(name).c_str());
 }
 
-/// Returns the row `name` of a part of Settings: Within<&Settings::part>(kPartRows, "name"). gcc 12
-/// may merge instances of this template from two source files, so structs in two files of a plugin
-/// need different names.
+/// Within<&Settings::part>(kPartRows, "name") converts the row "name" of a table for the struct
+/// `part` to a row for Settings, of which `part` is a member. gcc 12 may merge instances of this
+/// template from two source files. So structs in two files of a plugin must have different names.
 template <auto part, class Settings, class Part, std::size_t N>
 Property<Settings> WithinOf(Part Settings::*, const std::array<Property<Part>, N>& table,
                             std::string_view name) {
@@ -63,8 +63,9 @@ auto Within(const std::array<Property<Part>, N>& table, std::string_view name) {
   return WithinOf<part>(part, table, name);
 }
 
-/// Returns the row `name` of a child's table as a row of its bin. `child` returns the child, or
-/// NULL. The default is that of `defaults`, which have static storage.
+/// Converts a row of the table of a child element to a row for the table of its bin. `child`
+/// returns the child, or NULL. The default value comes from `defaults`, which must have static
+/// storage.
 template <class Settings, class ChildSettings, std::size_t N>
 Property<Settings> Proxy(const std::array<Property<ChildSettings>, N>& table, std::string_view name,
                          GObject* (*child)(GObject*), const ChildSettings* defaults = nullptr) {
@@ -81,13 +82,13 @@ std::array<Property<Settings>, N + M> JoinRows(const std::array<Property<Setting
                                                std::index_sequence<j...>) {
   return {{a[i]..., b[j]...}};
 }
-/// The rows of `a`, then those of `b`.
+/// Returns the rows of `a` followed by the rows of `b`.
 template <class Settings, std::size_t N, std::size_t M>
 auto Join(const std::array<Property<Settings>, N>& a, const std::array<Property<Settings>, M>& b) {
   return JoinRows(a, b, std::make_index_sequence<N>(), std::make_index_sequence<M>());
 }
 
-/// Installs the rows of `table` under the ids first_id, first_id + 1, ...
+/// Installs the rows of `table` with the ids first_id, first_id + 1, ...
 template <class Settings, std::size_t N>
 void InstallProperties(GObjectClass* klass, const std::array<Property<Settings>, N>& table,
                        guint first_id = 1) {
@@ -103,17 +104,17 @@ void SetProperty(Settings& s, const Property<Settings>& p, const GValue* v) {
   p.field.Set(&s, nullptr, v);
 }
 
-/// Rows that are functions need `object`, and take locks themselves.
+/// Reads a property. If the row is a function, it needs `object` and takes locks itself.
 template <class Settings>
 void GetProperty(const Settings& s, const Property<Settings>& p, GValue* v,
                  GObject* object = nullptr) {
   p.field.Get(&s, object, v);
 }
 
-/// The default of `changed` in ServeProperties(): does nothing.
+/// Does nothing. It is the default of `changed` in ServeProperties().
 inline void NothingMore(GObject*, GParamSpec*) {}
 
-/// Returns the rows of `table`, which is an array or a function that returns one.
+/// Returns the rows of `table`, which is an array or a function that returns an array.
 template <class Table>
 const auto& RowsOf(const Table& table) {
   if constexpr (std::is_function_v<Table>) {
@@ -123,7 +124,7 @@ const auto& RowsOf(const Table& table) {
   }
 }
 
-/// Locks a mutex if `wanted`.
+/// Locks a mutex if `wanted` is true.
 template <class Mutex>
 class LockIf {
  public:
@@ -140,15 +141,17 @@ class LockIf {
   Mutex* mutex_;
 };
 
-/// A copy of the settings, taken under the lock; `state` is as ServeProperties() needs it.
+/// Returns a copy of the settings, made with the mutex locked. For the type of `state`, see
+/// ServeProperties().
 template <class State>
 auto Snapshot(State& state) {
   const LockIf lock(true, state.mutex);
   return state.settings;
 }
 
-/// Installs `table` and both property methods of an element `Self` whose `state` has `settings`
-/// and a `mutex` that guards them. `changed` runs after each change, without the lock.
+/// Installs `table` and the two property methods of the element `Self`. The `state` of `Self` must
+/// have `settings` and a `mutex` that guards them. `changed` is called after each change, with the
+/// mutex unlocked.
 template <class Self, auto& table, void (*changed)(GObject*, GParamSpec*) = NothingMore>
 void ServeProperties(GObjectClass* klass) {
   klass->set_property = [](GObject* object, guint id, const GValue* v, GParamSpec* spec) {
@@ -169,7 +172,7 @@ void ServeProperties(GObjectClass* klass) {
   InstallProperties(klass, RowsOf(table));
 }
 
-/// Frees `state` with the object; `parent_class` is the one that G_DEFINE_TYPE makes.
+/// Makes finalize() delete `state`. `parent_class` is the variable that G_DEFINE_TYPE defines.
 template <class Self, gpointer& parent_class>
 void OwnState(GObjectClass* klass) {
   klass->finalize = [](GObject* object) {
@@ -178,7 +181,7 @@ void OwnState(GObjectClass* klass) {
   };
 }
 
-/// Does both: OwnState() and ServeProperties(), as nearly every element needs them.
+/// Calls OwnState() and ServeProperties(), which nearly every element needs.
 template <class Self, gpointer& parent_class, auto& table,
           void (*changed)(GObject*, GParamSpec*) = NothingMore>
 void ServeState(gpointer klass) {

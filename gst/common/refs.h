@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Owning pointers for GStreamer's reference-counted and boxed types.
+// Owning pointers for the reference-counted and boxed types of GStreamer.
 #pragma once
 #include <gst/gst.h>
 

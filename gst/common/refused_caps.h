@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Keeps the last refused caps, so that an element posts one error although GStreamer offers them
-// again with each buffer.
+// Remembers the caps that an element refused last. GStreamer offers refused caps again with each
+// buffer, but the element posts only one error.
 #pragma once
 #include <gst/gst.h>
 
@@ -8,17 +8,18 @@
 
 namespace lidar::gst {
 
-/// Used by the streaming thread.
+/// Must be used by the streaming thread only.
 class RefusedCaps {
  public:
-  /// Notes refused caps. Returns true if they differ from the last ones.
+  /// Notes that `caps` were refused. Returns true if they differ from the caps that were refused
+  /// last.
   bool Note(GstCaps* caps) {
     if (last_ && gst_caps_is_equal(last_.get(), caps)) return false;
     last_.reset(gst_caps_ref(caps));
     return true;
   }
   bool noted() const { return last_ != nullptr; }
-  /// Call it for accepted caps, and between runs.
+  /// Forgets the caps. Must be called when caps are accepted, and when the element stops.
   void Reset() { last_.reset(); }
 
  private:

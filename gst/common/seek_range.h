@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Applies seeks by time to a segment, if there is something to play.
+// Applies seeks in time to a segment, if the resulting range is not empty.
 #pragma once
 #include <gst/gst.h>
 
@@ -7,7 +7,7 @@
 
 namespace lidar::gst {
 
-/// The range that a seek asks for, with times counted from the beginning.
+/// The range that a seek requests. Its times are counted from the beginning of the stream.
 struct SeekRange {
   GstSeekType start_type = GST_SEEK_TYPE_NONE;
   GstClockTime start = 0;
@@ -29,8 +29,8 @@ inline GstClockTime FromBeginning(GstSeekType* type, gint64 time, const GstSegme
   return static_cast<GstClockTime>(std::max<gint64>(end + std::min<gint64>(time, 0), 0));
 }
 
-/// Applies the seek `event` to `segment`, whose format is time. Returns false and changes nothing
-/// for an empty range, which GStreamer treats as the caller's error.
+/// Applies the seek `event` to `segment`, whose format must be time. If the range is empty, returns
+/// false and changes nothing, because GStreamer treats an empty range as a programming error.
 inline bool ApplySeek(GstEvent* event, GstSegment* segment) {
   gdouble rate = 1;
   GstSeekFlags flags = GST_SEEK_FLAG_NONE;
@@ -41,15 +41,15 @@ inline bool ApplySeek(GstEvent* event, GstSegment* segment) {
                        &stop);
   range.start = FromBeginning(&range.start_type, start, *segment);
   range.stop = FromBeginning(&range.stop_type, stop, *segment);
-  // GStreamer also treats a start of -1 as 0.
+  // A start of -1 counts as 0, as in GStreamer.
   if (range.start_type == GST_SEEK_TYPE_SET && start == -1) range.start = 0;
   return range.IsSound(*segment) &&
          gst_segment_do_seek(segment, rate, GST_FORMAT_TIME, flags, range.start_type, range.start,
                              range.stop_type, range.stop, nullptr) != FALSE;
 }
 
-/// Completes a seek without start and flush. Playback continued meanwhile, so the segment continues
-/// from `end`, the time that playback has reached.
+/// Completes a seek that has neither a start nor a flush. Playback has continued since the seek, so
+/// the segment continues at `end`, the time that playback has reached.
 inline void GoOnFrom(GstClockTime end, GstSegment* segment) {
   segment->position = std::min(std::max(end, segment->position), segment->stop);
   segment->offset = segment->position - segment->start;

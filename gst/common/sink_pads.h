@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Links of pads, and sink pads as children with properties.
+// Functions for links between the pads of an element, and for sink pads as children with
+// properties.
 #pragma once
 #include "gst/common/refs.h"
 
 namespace lidar::gst {
 
-/// Returns an iterator over `pad`, the only pad to which another pad's queries and events go. The
-/// caller owns the iterator.
+/// Returns an iterator over the single pad `pad`, for a pad whose queries and events are forwarded
+/// only to `pad`. The caller owns the iterator.
 inline GstIterator* LinkTo(GstPad* pad) {
   GValue value = G_VALUE_INIT;
   g_value_init(&value, GST_TYPE_PAD);
@@ -23,7 +24,7 @@ inline guint SinkPadCount(gpointer element) {
   return pads;
 }
 
-/// Returns a new reference to sink pad `index`, or null past the end.
+/// Returns a new reference to the sink pad with this index, or null if there is none.
 inline GObject* SinkPadAt(gpointer element, guint index) {
   GST_OBJECT_LOCK(element);
   gpointer pad = g_list_nth_data(GST_ELEMENT(element)->sinkpads, index);
@@ -32,7 +33,8 @@ inline GObject* SinkPadAt(gpointer element, guint index) {
   return static_cast<GObject*>(pad);
 }
 
-/// GstChildProxy of an element whose sink pads are its children, so that sink_0::topic can be set.
+/// Implements GstChildProxy for an element whose children are its sink pads, so that for example
+/// sink_0::topic can be set.
 inline void ServeSinkPads(gpointer iface, gpointer) {
   auto* proxy = static_cast<GstChildProxyInterface*>(iface);
   proxy->get_children_count = [](GstChildProxy* p) { return SinkPadCount(p); };
@@ -44,7 +46,7 @@ inline void ServeSinkPads(gpointer iface, gpointer) {
   };
 }
 
-/// Adds a ghost pad of `type` for `target`, and emits "child-added".
+/// Adds a ghost pad of `type` with the target `target`, and emits "child-added".
 inline GstPad* AddGhostSink(GstElement* element, GType type, GstPadTemplate* pad_template,
                             const gchar* name, GstPad* target) {
   auto* ghost = GST_PAD(g_object_new(type, "name", name, "direction", GST_PAD_SINK, "template",

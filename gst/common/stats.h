@@ -20,7 +20,7 @@ struct Stat {
   Field<Counters> field;
 };
 
-/// Adds a field to `out` for each row.
+/// Adds a field to `out` for each row of `table`.
 template <class Counters, std::size_t N>
 void AddStats(GstStructure* out, const std::array<Stat<Counters>, N>& table, const Counters& c) {
   for (const auto& row : table) {
@@ -39,7 +39,7 @@ StructurePtr ToStructure(const char* name, const std::array<Stat<Counters>, N>& 
   return out;
 }
 
-/// Adds the counts of `part` to those of `sum`, row by row.
+/// Adds the counts in `part` to the counts in `sum`, for each row of `table`.
 template <class Counters, std::size_t N>
 void AddCounts(const std::array<Stat<Counters>, N>& table, const Counters& part, Counters* sum) {
   for (const auto& row : table) row.field.Add(part, sum);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Statistics of elements as JSON.
+// Converts the statistics of elements to JSON.
 #pragma once
 #include <gst/gst.h>
 
@@ -13,7 +13,7 @@ namespace lidar::gst {
 
 enum class FieldNames {
   kAsTheyAre,
-  kWithoutDashes,  // for the paths of Foxglove's plots
+  kWithoutDashes,  // needed for the paths in Foxglove's plots
 };
 
 inline nlohmann::json ToJson(const GstStructure* structure, FieldNames names);
@@ -43,8 +43,8 @@ inline nlohmann::json ToJson(const GValue* value, FieldNames names) {
   return text ? text.get() : "";
 }
 
-/// Converts numbers, booleans, strings, enumerations (by nick), arrays and structures; other types
-/// become GStreamer's text. NULL becomes an empty object.
+/// Converts numbers, booleans, strings, arrays and structures. Other types are converted to
+/// GStreamer's text; the text of an enumeration is its nick. NULL is converted to an empty object.
 inline nlohmann::json ToJson(const GstStructure* structure, FieldNames names) {
   auto object = nlohmann::json::object();
   if (structure == nullptr) return object;
@@ -57,7 +57,7 @@ inline nlohmann::json ToJson(const GstStructure* structure, FieldNames names) {
   return object;
 }
 
-/// The property `stats` of an element as JSON; null if it has none.
+/// Returns the property `stats` of an element as JSON, or null if the element has none.
 inline nlohmann::json StatsAsJson(GstElement* element, FieldNames names) {
   if (element == nullptr) return nullptr;
   GParamSpec* spec = g_object_class_find_property(G_OBJECT_GET_CLASS(element), "stats");
