@@ -12,19 +12,21 @@ constexpr std::uint8_t kMinor = 3;
 constexpr std::uint8_t kPointCloud = 0;
 constexpr std::uint8_t kKdTree = 1;
 constexpr std::uint16_t kMetadata = 0x8000;  // flag
-constexpr std::uint8_t kMaxEntries = 16;     // of metadata
+constexpr std::uint8_t kMaxEntries = 16;     // greatest number of metadata entries
 constexpr std::uint8_t kMaxDataType = 11;
 constexpr std::uint8_t kMaxKdLevel = 6;
 constexpr std::uint32_t kMaxBitLength = 32;
 
-/// Metadata numbers have variable length; plausible ones have one byte.
+/// Reads a number of variable length. The numbers of plausible metadata have one byte, so returns
+/// nothing for a longer number.
 std::optional<std::uint8_t> Short(ByteReader* reader) {
   const std::uint8_t number = reader->U8();
   if (number >= 0x80) return std::nullopt;
   return number;
 }
 
-/// Skips the metadata of a cloud. Refuses nested ones, which libdraco follows to any depth.
+/// Skips the metadata of a cloud. Returns false for nested metadata, which libdraco would read to
+/// any depth.
 bool SkipMetadata(ByteReader* reader) {
   const auto of_attributes = Short(reader);
   const auto entries = Short(reader);
@@ -35,14 +37,14 @@ bool SkipMetadata(ByteReader* reader) {
     if (!size) return false;
     reader->Skip(*size);
   }
-  return Short(reader) == 0;  // number of nested metadata
+  return Short(reader) == 0;  // the number of nested metadata must be 0
 }
 
 bool CheckAttributes(ByteReader* reader, const DracoLimits& limits) {
   const std::uint8_t count = reader->U8();
   if (count == 0 || count > limits.max_attributes) return false;
   for (std::uint8_t i = 0; i < count; ++i) {
-    reader->Skip(1);  // what the attribute means
+    reader->Skip(1);  // the meaning of the attribute
     const std::uint8_t data_type = reader->U8();
     const std::uint8_t components = reader->U8();
     reader->Skip(1);  // normalised
@@ -55,8 +57,8 @@ bool CheckAttributes(ByteReader* reader, const DracoLimits& limits) {
   return true;
 }
 
-/// The kd-tree repeats the count of points. A large count would cost libdraco seconds, but no
-/// memory.
+/// Checks the number of points that the kd-tree repeats. If it were too large, libdraco would need
+/// seconds, but no additional memory.
 bool CheckKdTree(ByteReader* reader, std::uint32_t points) {
   const std::uint8_t level = reader->U8();
   const std::uint32_t bit_length = reader->Le32();

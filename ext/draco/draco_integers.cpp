@@ -14,7 +14,8 @@ namespace {
 constexpr auto kGeneric = ::draco::GeometryAttribute::GENERIC;
 constexpr int kFastest = 10;
 
-/// Adds `list` as an attribute, without Draco's builder, which would look for duplicates.
+/// Adds `list` as an attribute. Draco's builder is not used, because it would search for
+/// duplicates.
 template <class T>
 void AddList(const std::vector<T>& list, ::draco::DataType type, ::draco::PointCloud* cloud) {
   ::draco::GeometryAttribute attribute;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Codes lists of integers as a Draco point cloud, with an attribute for each list.
+// Codes lists of integers as a Draco point cloud. Each list is an attribute.
 #pragma once
 #include "src/codec/integer_coder.h"
 
@@ -11,7 +11,7 @@ class DracoIntegers : public codec::IntegerCoder {
               std::vector<std::uint8_t>* out) const override;
   bool Decode(ByteView stream, std::uint32_t count, bool has_levels,
               codec::IntegerLists* lists) const override;
-  /// Stateless, so a shared object is enough.
+  /// Returns an object for all callers. It has no state.
   static const DracoIntegers* Shared();
 };
 

@@ -17,15 +17,15 @@ namespace {
 
 using Attribute = ::draco::GeometryAttribute;
 
-// The default of both speeds in draco_point_cloud_transport is 7.
+// The default of both speeds in draco_point_cloud_transport.
 constexpr int kSpeed = 7;
-// Draco's coder of integers takes memory and time in proportion to the range of their differences.
+// Draco's integer coder needs memory and time in proportion to the range of the differences.
 constexpr double kWidestRange = 1 << 20;
-// Draco counts the numbers of a field in a byte.
+// Draco stores the number of components of a field in a byte.
 constexpr std::uint32_t kMostNumbers = 255;
 
-/// Draco converts integers to int32, so it refuses large unsigned ones. As int32, they keep their
-/// bits.
+/// Returns Draco's type for a field. Draco converts integers to int32 and refuses values that are
+/// larger. So a U32 field is declared as int32, which does not change its bits.
 ::draco::DataType DracoTypeOf(FieldType type) {
   constexpr ::draco::DataType kTypes[] = {
       ::draco::DT_INT8,  ::draco::DT_UINT8, ::draco::DT_INT16,   ::draco::DT_UINT16,
@@ -63,7 +63,8 @@ void AddField(const FieldOfPoints& field, ByteView points, std::uint32_t point_s
                   points.data + std::size_t{i} * point_step + field.offset, size);
 }
 
-/// Returns false if the attribute's values do not have the field's size.
+/// Copies the attribute to the field of each point. Returns false if its values do not have the
+/// size of the field.
 bool CopyField(const ::draco::PointAttribute& attribute, const FieldOfPoints& field,
                const FieldLayout& layout, std::vector<std::uint8_t>* points) {
   const std::size_t size = BytesOf(field);
@@ -92,7 +93,7 @@ bool CopyPoints(const ::draco::PointCloud& cloud, const FieldLayout& layout,
   return true;
 }
 
-/// Returns the largest minus the smallest number of the field.
+/// Returns the difference between the largest and the smallest number in the field.
 double RangeOf(const FieldOfPoints& field, ByteView points, std::uint32_t point_step) {
   double low = std::numeric_limits<double>::max();
   double high = std::numeric_limits<double>::lowest();
@@ -106,7 +107,7 @@ double RangeOf(const FieldOfPoints& field, ByteView points, std::uint32_t point_
   return high - low;
 }
 
-/// Returns true if a field of integers spans more than kWidestRange.
+/// Returns true if the range of an integer field is greater than kWidestRange.
 bool HasWideIntegers(ByteView points, const FieldLayout& layout) {
   return std::any_of(layout.fields.begin(), layout.fields.end(), [&](const FieldOfPoints& f) {
     return (f.type == FieldType::kI32 || f.type == FieldType::kU32) &&
@@ -126,7 +127,7 @@ bool EncodeFields(ByteView points, const FieldLayout& layout, std::vector<std::u
   encoder.SetSpeedOptions(kSpeed, kSpeed);
   encoder.SetEncodingMethod(::draco::POINT_CLOUD_SEQUENTIAL_ENCODING);
   if (HasWideIntegers(points, layout)) {
-    // Any stock decoder reads integers that are stored as they are.
+    // Integers are stored without compression, which every Draco decoder can read.
     encoder.options().SetGlobalBool("use_built_in_attribute_compression", false);
     for (const auto type : {Attribute::POSITION, Attribute::GENERIC})
       encoder.SetAttributePredictionScheme(type, ::draco::PREDICTION_NONE);

@@ -21,14 +21,15 @@ namespace {
 
 using lidar::Geometry;
 
-/// Used by the streaming thread.
+/// The state of a decoder. It is used by the streaming thread only.
 struct State {
   lidar::codec::CloudFormat format;
   Geometry geometry = Geometry::kXyz;
   std::optional<lidar::draco::SliceDecoder> decoder;
 };
 
-/// A plain Draco file needs no caps except its media type.
+/// Returns the geometry that the caps name, or nothing if it is unknown. Caps without geometry are
+/// xyz, because caps of a plain Draco file need only a media type.
 std::optional<Geometry> GeometryOf(const GstCaps* caps) {
   const gchar* name = gst_structure_get_string(gst_caps_get_structure(caps, 0), "geometry");
   if (g_strcmp0(name, "range") == 0) return Geometry::kRange;

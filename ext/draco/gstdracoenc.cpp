@@ -39,7 +39,7 @@ struct DracoSettings {
   RangeCoder range_coder = RangeCoder::kResidual;
   guint level = 7;
 
-  /// Returns nothing for auto, which is range if the cloud has ranges.
+  /// Returns nothing for kAuto, which chooses ranges if the cloud has ranges.
   std::optional<Geometry> wanted_geometry() const {
     if (geometry == GeometryChoice::kAuto) return std::nullopt;
     return geometry == GeometryChoice::kRange ? Geometry::kRange : Geometry::kXyz;
@@ -66,12 +66,12 @@ GType RangeCoderType() {
   return type;
 }
 
-/// Used by the streaming thread.
+/// The coders of a stream. They are used by the streaming thread only.
 struct Coder {
   lidar::codec::CloudFormat format;
   std::optional<lidar::draco::SliceEncoder> encoder;
-  std::optional<lidar::draco::SliceDecoder> decoder;  // for error-check
-  guint max_points = 0;                               // of `decoder`
+  std::optional<lidar::draco::SliceDecoder> decoder;  // only for error-check
+  guint max_points = 0;                               // limit of `decoder`
   bool with_intensity = false;
   std::string mode;
   lidar::codec::EncodedSlice slice;
@@ -125,7 +125,7 @@ static gboolean SetFormat(GstLidarEncoder* base, const GstLidarCloudFormat* clou
   }
   coder.encoder = lidar::draco::SliceEncoder::Create(coder.format, geometry, settings.range_coder);
   if (!coder.encoder) return FALSE;
-  if (before) coder.encoder->Continue(*before);  // the width of clouds may change all the time
+  if (before) coder.encoder->Continue(*before);  // the width may change with each cloud
   const bool range = coder.encoder->geometry() == Geometry::kRange;
   const auto kept = lidar::codec::KeptFields(info.fields, coder.with_intensity, range);
   coded->caps =

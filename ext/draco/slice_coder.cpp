@@ -9,7 +9,7 @@
 namespace lidar::draco {
 namespace {
 
-constexpr unsigned kTryBothEvery = 64;  // slices
+constexpr unsigned kTryBothEvery = 64;  // number of slices
 
 }  // namespace
 
@@ -30,8 +30,9 @@ void XyzSliceEncoder::Thin(const std::vector<bool>& kept) {
   if (!cloud_.intensity.empty()) cloud_.intensity.resize(count);
 }
 
-/// Tries both of Draco's coders, because the order of the points decides which result is smaller. A
-/// sensor's order suits the sequential coder.
+/// Encodes with both of Draco's coders and keeps the smaller result. Which of them is smaller
+/// depends on the order of the points. The sequential coder is better for points in the order of a
+/// sensor.
 bool XyzSliceEncoder::TryBothMethods(const XyzSettings& settings, codec::EncodedSlice* slice,
                                      XyzResult* result) {
   XyzSettings other = settings;
@@ -84,7 +85,7 @@ std::optional<SliceEncoder> SliceEncoder::Create(const codec::CloudFormat& forma
 
 std::string SliceEncoder::Mode(unsigned level) const {
   if (range_) return range_->Mode();
-  // Draco's kd-tree has four modes; other levels use the nearest of them.
+  // The kd-tree of Draco has four modes. A level without a mode of its own uses the nearest mode.
   return level == 0 ? "xyz-sequential" : "xyz-kd" + std::to_string(std::min(level / 2 * 2, 6U));
 }
 

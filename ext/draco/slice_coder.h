@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Encodes and decodes the raw slices of one stream with Draco, in the geometry chosen for it.
+// Encodes and decodes the slices of one stream with Draco, as ranges or as xyz.
 #pragma once
 #include <optional>
 #include <string>
@@ -13,10 +13,10 @@
 namespace lidar::draco {
 
 struct SliceSettings : codec::SliceSettings {
-  unsigned level = 7;  // Draco's compression level, for xyz
+  unsigned level = 7;  // Draco's compression level; only for xyz
 };
 
-/// Slices as plain Draco files. For one thread at a time.
+/// Encodes slices as plain Draco files. Only one thread at a time may use it.
 class XyzSliceEncoder {
  public:
   explicit XyzSliceEncoder(const codec::CloudLayout& layout) : layout_(layout) {}
@@ -26,8 +26,8 @@ class XyzSliceEncoder {
   bool has_intensity() const { return has_intensity_; }
   void Thin(const std::vector<bool>& kept);
   codec::SliceResult Encode(const SliceSettings& settings, codec::EncodedSlice* slice);
-  /// Takes over from `before` the better method, and the number of slices until both are tried
-  /// again.
+  /// Copies two things from `before`: which method was better, and how many slices remain until
+  /// both methods are tried again.
   void Continue(const XyzSliceEncoder& before) {
     method_ = before.method_;
     slices_ = before.slices_;
@@ -40,71 +40,75 @@ class XyzSliceEncoder {
   XyzCloud cloud_;
   bool has_intensity_ = false;
   XyzMethod method_ = XyzMethod::kKdTree;
-  unsigned slices_ = 0;  // slices with a level above 0; every kTryBothEvery-th tries both methods
+  // The number of slices with a level above 0. Every kTryBothEvery-th of them tries both methods.
+  unsigned slices_ = 0;
 };
 
-/// Encodes slices as codec::SliceEncoder does, and also in xyz geometry and with Draco's coders.
-/// For one thread at a time.
+/// Encodes slices like codec::SliceEncoder, but also supports xyz geometry and Draco's coders. Only
+/// one thread at a time may use it.
 class SliceEncoder {
  public:
-  /// Returns nothing if `format` cannot be coded in that geometry. Without a geometry it takes
-  /// kRange if `format` allows it.
+  /// Returns nothing if `format` cannot be coded with this geometry. If `geometry` is empty, kRange
+  /// is used if `format` allows it.
   static std::optional<SliceEncoder> Create(const codec::CloudFormat& format,
                                             std::optional<Geometry> geometry,
                                             codec::RangeCoder coder = codec::RangeCoder::kAdaptive);
 
   Geometry geometry() const { return range_ ? Geometry::kRange : Geometry::kXyz; }
 
-  /// Loads the points of `raw`, which holds whole points (range: whole beams) of the format, for
-  /// Encode().
+  /// Loads the points of `raw` for Encode(). `raw` must have whole points, and whole beams for
+  /// kRange.
   void Load(ByteView raw, std::uint32_t first_column, bool with_intensity);
-  /// The number of loaded returns.
+  /// Returns the number of loaded returns.
   std::size_t returns() const { return range_ ? range_->returns() : xyz_.cloud().size(); }
-  /// Longest range, or longest side of the points' box [m].
+  /// Returns the longest range, or the longest side of the bounding box of the points [m].
   double extent_m() const { return range_ ? range_->extent_m() : LongestSide(xyz_.cloud()); }
-  /// Resolution of the loaded ranges [mm]; 1 if there are none.
+  /// Returns the resolution of the loaded ranges [mm], or 1 if there are none.
   std::uint32_t range_unit_mm() const { return range_ ? range_->range_unit_mm() : 1; }
   bool has_intensity() const { return range_ ? range_->has_intensity() : xyz_.has_intensity(); }
-  /// Returns the name of the coder that Encode() will use, for statistics and predictors:
-  /// "xyz-kd6".
+  /// Returns the name of the coder that Encode() will use, for example "xyz-kd6". The name is used
+  /// in statistics and by predictors.
   std::string Mode(unsigned level) const;
 
-  /// Keeps only the loaded beams (range) or points (xyz) that `kept` marks.
+  /// Keeps only the loaded beams (kRange) or points (kXyz) that are true in `kept`.
   void Thin(const std::vector<bool>& kept);
-  /// The number of beams or points that Thin() chooses from.
+  /// Returns the number of beams or points among which Thin() selects.
   std::size_t rows() const { return range_ ? range_->rows() : xyz_.cloud().size(); }
 
-  /// As in codec::SliceEncoder; has no effect in xyz geometry.
+  /// Like in codec::SliceEncoder. Has no effect in xyz geometry.
   void set_threads(unsigned threads);
   void set_effort(unsigned effort);
 
-  /// Encodes the loaded points. May be called again for the same ones.
+  /// Encodes the loaded points. May be called several times for the same points.
   codec::SliceResult Encode(const SliceSettings& settings, codec::EncodedSlice* slice);
-  /// Takes over what the encoder of the stream's previous format measured about the methods.
+  /// Continues the stream of `before`, whose format was different. Copies what `before` found out
+  /// about Draco's methods.
   void Continue(const SliceEncoder& before) { xyz_.Continue(before.xyz_); }
 
  private:
   explicit SliceEncoder(const codec::CloudLayout& layout) : xyz_(layout) {}
 
   std::optional<codec::SliceEncoder> range_;
-  XyzSliceEncoder xyz_;  // used if there is no `range_`
+  XyzSliceEncoder xyz_;  // only used if `range_` is empty
 };
 
-/// Decodes the slices of one stream; any bytes give a cloud or nothing. For one thread at a time.
+/// Decodes the slices of one stream. Any bytes may be passed to it. Only one thread at a time may
+/// use it.
 class SliceDecoder {
  public:
   using Shape = codec::SliceDecoder::Shape;
   using Quality = codec::SliceDecoder::Quality;
 
-  /// kRange needs a sensor model.
+  /// If the geometry is kRange, `format` must have a sensor model.
   SliceDecoder(const codec::CloudFormat& format, Geometry geometry, std::uint32_t max_points);
 
-  /// Decodes a slice and keeps it for Write(). Returns nothing for a stream that is damaged, of
-  /// another sensor, or larger than max_points.
+  /// Decodes a slice for Write(). Returns nothing if the stream is damaged, comes from another
+  /// sensor, or has more than max_points points.
   std::optional<Shape> Decode(ByteView stream);
-  /// The quality of the slice decoded last; unknown for xyz, which is a plain Draco file.
+  /// Returns the quality of the slice that was decoded last. It is not known for xyz, because a
+  /// plain Draco file does not contain it.
   Quality quality() const { return range_ ? range_->quality() : Quality{}; }
-  /// Writes width * height points of the format.
+  /// Writes the decoded slice as width * height points.
   void Write(std::uint8_t* raw) const;
 
  private:

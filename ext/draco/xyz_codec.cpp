@@ -22,15 +22,15 @@ namespace {
 using ::draco::GeometryAttribute;
 
 constexpr int kMaxBits = 30;
-// Draco's sequential coder sorts symbols in a table of 2^bits entries.
+// Draco's sequential coder sorts symbols with a table of 2^bits entries.
 constexpr int kMaxSequentialBits = 18;
-// Relative error of a float, once rounded.
+// The relative rounding error of a float.
 constexpr double kRounding = 1.0 / (1 << 24);
 
 struct Box {
   std::array<float, 3> low;
-  double extent = 0;    // of the longest side
-  double farthest = 0;  // largest coordinate, without its sign
+  double extent = 0;    // length of the longest side
+  double farthest = 0;  // largest absolute value of a coordinate
 };
 
 Box BoxOf(const XyzCloud& cloud) {
@@ -59,11 +59,12 @@ struct Grid {
   int bits;
 };
 
-/// Draco computes in floats. Its encoder rounds the offset from the corner and the offset divided
-/// by the step; its decoder rounds both again. Returns the sum of these errors [m].
+/// Returns a bound for the rounding errors of Draco [m], which computes in floats. The encoder
+/// rounds the offset from the corner of the box, and the offset divided by the step. The decoder
+/// rounds both again.
 double RoundingOf(const Box& box) { return kRounding * (8 * box.extent + 2 * box.farthest); }
 
-/// Returns the grid that keeps to the settings, or nothing.
+/// Returns the coarsest grid that the settings allow, or nothing if there is none.
 std::optional<Grid> GridOf(const Box& box, const XyzSettings& settings) {
   const double rounding = RoundingOf(box);
   double step = settings.max_error_m / kXyzErrorPerStep - 2 * rounding;
@@ -105,15 +106,15 @@ bool Encode(const ::draco::PointCloud& points, const Box& box, const Grid& grid,
   return encoder.EncodePointCloudToBuffer(points, buffer).ok();
 }
 
-/// Keeps attributes as integers of their grid, because Draco's own conversion to floats takes a
-/// fifth of the decoding time.
+/// Makes the decoder return quantised attributes as integers. Draco's own conversion to floats
+/// takes a fifth of the decoding time.
 void LeaveQuantized(::draco::Decoder* decoder) {
   decoder->SetSkipAttributeTransform(GeometryAttribute::POSITION);
   decoder->SetSkipAttributeTransform(GeometryAttribute::GENERIC);
 }
 
-/// Converts `bytes`, integers of the attribute's grid, to `values`, and rounds in floats as Draco
-/// does.
+/// Converts the quantised integers in `bytes` to `values`, with the same rounding in floats as in
+/// Draco.
 template <std::size_t kComponents>
 bool FromGrid(const ::draco::PointAttribute& attribute, const std::uint8_t* bytes,
               std::vector<float>* values) {
@@ -135,8 +136,8 @@ bool FromGrid(const ::draco::PointAttribute& attribute, const std::uint8_t* byte
   return true;
 }
 
-/// Copies Draco's attribute of that type to `values`. Returns false unless it has kComponents
-/// finite numbers for each point.
+/// Copies the attribute of this type to `values`. Returns false unless it has kComponents finite
+/// numbers for each point.
 template <std::size_t kComponents>
 bool GetAttribute(const ::draco::PointCloud& cloud, GeometryAttribute::Type type,
                   std::vector<float>* values) {
