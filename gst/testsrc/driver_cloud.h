@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Clouds as the ROS driver of a sensor publishes them: a row in the order of firing.
+// Writes clouds like those that the ROS driver of a sensor publishes. They have a single row of
+// points, in the order of firing.
 #pragma once
 #include <optional>
 #include <vector>
@@ -9,24 +10,25 @@
 
 namespace lidar::gst {
 
-/// Used by the streaming thread.
+/// Must be used by the streaming thread only.
 class DriverCloud {
  public:
   explicit DriverCloud(const synth::Firing& firing);
 
-  /// Caps of such clouds. They do not fix the width, because each cloud has its own.
+  /// Returns the caps of the clouds, without a width, because each cloud has a different width.
   static CloudInfo InfoFor(const synth::Firing& firing);
 
   struct Sweep {
     std::uint64_t scan;
     ColumnWindow window;
-    GstClockTime begin;  // of its first column, since 1970
-    Duration column;     // from one to the next
+    GstClockTime begin;  // time of the first column, since 1970
+    Duration column;     // time from one column to the next
   };
-  /// Writes the points of the returns.
+  /// Writes a point for each return. The result is valid until the next call.
   const std::vector<std::uint8_t>& Write(const synth::Returns& returns, const synth::Rays& rays,
                                          const Sweep& sweep);
-  /// Caps of the last written cloud. The width is 0 if it has no returns.
+  /// Returns the caps of the cloud that was written last. The width is 0 if the cloud has no
+  /// returns.
   const CloudInfo& info() const { return info_; }
 
  private:
@@ -38,7 +40,8 @@ class DriverCloud {
     Vec3 direction;
     double since_begin_ns;
   };
-  /// Offsets of the fields that drivers add to x, y, z and intensity.
+  /// The offsets of fields that drivers add to x, y, z and intensity. Empty if the cloud does not
+  /// have the field.
   struct Offsets {
     std::optional<std::uint32_t> ring, line, time, timestamp;
   };

@@ -125,22 +125,24 @@ const std::array<Row, 13> kProperties = {{
     {"is-live", "Scan at the pace of the clock; false: as fast as possible", &Settings::is_live},
 }};
 
-// A source that is not live starts its capture times at 2024-01-01T00:00:00Z, so that its output is
-// repeatable.
+// The capture time at which a source that is not live starts: 2024-01-01T00:00:00Z. It is fixed, so
+// that the output is repeatable.
 constexpr GstClockTime kEpoch = G_GUINT64_CONSTANT(1'704'067'200) * GST_SECOND;
 
-/// Poses as a text file in the format of the TUM RGB-D benchmark, which evo and others read.
+/// Writes poses to a text file in the format of the TUM RGB-D benchmark, which evo and other tools
+/// read.
 class TrajectoryLog {
  public:
-  /// Truncates the file. Test ok() for success.
+  /// Creates the file, or empties an existing file. Check ok() afterwards.
   explicit TrajectoryLog(const std::string& path) : file_(path) {
     file_.stream() << std::fixed << "# timestamp tx ty tz qx qy qz qw\n" << std::flush;
   }
   bool ok() const { return file_.ok(); }
-  /// Returns false if the row could not be written.
+  /// Writes a row. Returns false if that fails.
   bool Write(GstClockTime unix_time, const lidar::synth::Pose& pose) {
     const auto [x, y, z, w] = pose.ToQuaternion();
-    // A double does not hold the nanoseconds of a Unix time.
+    // The time is written as integers, because a double cannot represent a Unix time in
+    // nanoseconds.
     file_.stream() << unix_time / GST_SECOND << '.' << std::setfill('0') << std::setw(9)
                    << unix_time % GST_SECOND << std::setprecision(6) << ' ' << pose.x << ' '
                    << pose.y << ' ' << pose.z << std::setprecision(9) << ' ' << x << ' ' << y << ' '
@@ -155,10 +157,10 @@ class TrajectoryLog {
 struct State {
   explicit State(GstBaseSrc* source) : pacer(source) {}
 
-  std::mutex mutex;  // guards settings and latency
+  std::mutex mutex;  // guards `settings` and `latency`
   Settings settings;
-  GstClockTime latency = GST_CLOCK_TIME_NONE;  // of one slice, while started
-  // Only the streaming thread uses these, between start and stop.
+  GstClockTime latency = GST_CLOCK_TIME_NONE;  // longest duration of a slice, while started
+  // The members below are used by the streaming thread only, between start and stop.
   std::optional<SliceMaker> maker;
   std::optional<lidar::synth::Imu> imu;
   std::optional<ImuPad> imu_pad;
@@ -187,7 +189,7 @@ lidar::synth::ScannerConfig ConfigFrom(const Settings& s) {
   return config;
 }
 
-/// Unknown channels are left out; Start refuses them.
+/// Ignores unknown channels here, because Start() refuses them.
 SliceOptions OptionsFrom(const Settings& s) {
   std::string unknown;
   SliceOptions options;
@@ -276,7 +278,7 @@ static GstCaps* GetCaps(GstBaseSrc* base, GstCaps* filter) {
   return caps;
 }
 
-/// Create() sets the caps of each buffer if each buffer has caps of its own.
+/// Negotiates the caps. If each buffer has different caps, Create() sets them instead.
 static gboolean Negotiate(GstBaseSrc* base) {
   const auto& maker = StateOf(base).maker;
   if (maker && maker->OwnInfo() != nullptr) return TRUE;
@@ -294,7 +296,8 @@ static gboolean Query(GstBaseSrc* base, GstQuery* query) {
   return GST_BASE_SRC_CLASS(gst_lidar_test_src_parent_class)->query(base, query);
 }
 
-/// A sensor does not wait: a reader that is late by more than a scan misses data.
+/// Skips slices if the source is late by more than a scan, because a sensor does not wait for its
+/// reader.
 static bool SkipWhatIsLate(GstElement* element, State* state) {
   const Duration due = state->maker->NextEnd() + state->maker->period();
   const auto now = state->pacer.Now();
@@ -305,7 +308,7 @@ static bool SkipWhatIsLate(GstElement* element, State* state) {
   return true;
 }
 
-/// Stream time as running time, and as time since 1970.
+/// These functions convert a stream time to a running time and to a time since 1970.
 static GstClockTime RunningTime(GstLidarTestSrc* self, Duration t) {
   const bool live = gst_base_src_is_live(GST_BASE_SRC(self));
   return live ? self->state->pacer.ToRunningTime(t) : static_cast<GstClockTime>(t.count());
@@ -315,8 +318,8 @@ static GstClockTime UnixTime(GstLidarTestSrc* self, Duration t) {
   return live ? self->state->pacer.ToUnixTime(t) : kEpoch + static_cast<GstClockTime>(t.count());
 }
 
-/// Writes a row. Warns of the first row that cannot be written. Earlier rows stay, and no more
-/// follow.
+/// Writes the pose at the time `at` to the trajectory. If that fails, posts a warning and closes
+/// the file. The rows that have been written are kept.
 static void LogPose(GstLidarTestSrc* self, Duration at) {
   State& state = *self->state;
   if (!state.log) return;
@@ -327,7 +330,7 @@ static void LogPose(GstLidarTestSrc* self, Duration at) {
                       GST_ERROR_SYSTEM);
 }
 
-/// Pushes the samples of a slice's sweep.
+/// Pushes the IMU samples between `begin` and `end`.
 static void PushImu(GstLidarTestSrc* self, Duration begin, Duration end) {
   State& state = *self->state;
   if (!state.imu) return;
@@ -343,8 +346,8 @@ static void PushImu(GstLidarTestSrc* self, Duration begin, Duration end) {
   state.imu_pad->Push(samples, kSensorsFrame, RunningTime(self, first));
 }
 
-/// Casts the rays before the slice is due, so that a live slice leaves when its last column is
-/// sampled.
+/// Creates a slice. Casts the rays before the slice is due, so that a live slice is pushed as soon
+/// as its last column has been sampled.
 static GstFlowReturn CreateSlice(GstLidarTestSrc* self, GstBuffer** out) {
   State& state = *self->state;
   const bool live = gst_base_src_is_live(GST_BASE_SRC(self));
@@ -364,7 +367,7 @@ static GstFlowReturn CreateSlice(GstLidarTestSrc* self, GstBuffer** out) {
   return GST_FLOW_OK;
 }
 
-/// Sets the caps of each buffer if the buffers differ in width.
+/// Creates a buffer. If the width of the buffers varies, sets the caps of each buffer.
 static GstFlowReturn Create(GstPushSrc* push, GstBuffer** out) {
   auto* self = GST_LIDAR_TEST_SRC(push);
   const CloudInfo* info = self->state->maker->OwnInfo();
@@ -372,11 +375,12 @@ static GstFlowReturn Create(GstPushSrc* push, GstBuffer** out) {
     const GstFlowReturn flow = CreateSlice(self, out);
     if (flow != GST_FLOW_OK || info == nullptr) return flow;
     if (info->width > 0) break;
-    gst_clear_buffer(out);  // drivers publish no empty cloud
+    gst_clear_buffer(out);  // drivers do not publish empty clouds
   }
   const CapsPtr caps(info->ToCaps());
   const GstFlowReturn flow = SetSourceCaps(GST_BASE_SRC(push), caps.get());
-  if (flow != GST_FLOW_OK) gst_clear_buffer(out);  // the base class ignores a buffer with an error
+  // The base class ignores the buffer if the result is an error.
+  if (flow != GST_FLOW_OK) gst_clear_buffer(out);
   return flow;
 }
 

@@ -19,7 +19,7 @@ struct ChannelName {
   std::string_view name;
   FieldType type;
 };
-// Ordered as Channel; names and types are those of ouster_src.
+// The order is that of the enumeration Channel. Names and types are the same as in ouster_src.
 constexpr std::array<ChannelName, 4> kChannels = {{{"reflectivity", FieldType::kU16},
                                                    {"signal", FieldType::kU16},
                                                    {"ring", FieldType::kU16},
@@ -98,7 +98,7 @@ CloudInfo SliceMaker::InfoFor(const synth::ScannerConfig& config, const SliceOpt
 }
 
 Duration SliceMaker::LongestSlice() const {
-  // Rounding makes the lengths of slices differ by a nanosecond.
+  // The durations of slices differ by a nanosecond, because they are rounded.
   return period_ / std::int64_t{slices_} + Duration{1};
 }
 
@@ -145,7 +145,7 @@ BufferPtr SliceMaker::MakePixels() const {
   BufferPtr buffer(
       gst_buffer_new_allocate(nullptr, returns_.range_mm.size() * point_step_, nullptr));
   BufferMap map(buffer.get(), GST_MAP_WRITE);
-  // Gaps between the fields are zero, so that the same seed gives the same bytes.
+  // The gaps between fields are set to zero, so that the same seed gives the same bytes.
   if (!extras_.empty()) std::memset(map.data(), 0, map.size());
   WritePoints(map.data());
   return buffer;

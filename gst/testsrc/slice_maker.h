@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Slices of a synthetic scan as buffers of the cloud caps.
+// Converts slices of a synthetic scan to buffers with the caps of a cloud.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -13,41 +13,43 @@
 
 namespace lidar::gst {
 
-/// Fields of a point beyond x, y, z, intensity and range.
+/// The fields of a point besides x, y, z, intensity and range.
 enum class Channel { kReflectivity, kSignal, kRing, kTime };
 
-/// Parses "reflectivity,ring". Returns nothing for an unknown name, and sets `unknown`.
+/// Parses a list such as "reflectivity,ring". If a name is unknown, returns nothing and sets
+/// `unknown` to the name.
 std::optional<std::vector<Channel>> ParseChannels(std::string_view text, std::string* unknown);
 
 struct SliceOptions {
-  // 0: automatic, or whole scans of a sensor with a firing table.
+  // 0: automatic, but whole scans for a sensor with a firing table.
   std::uint32_t slices_per_scan = 0;
   std::vector<Channel> channels;
 };
 
-/// Scans one slice after the other. Stamps count from the start of the first scan.
+/// Makes the slices of a scan, one after the other. Times are counted from the start of the first
+/// scan.
 class SliceMaker {
  public:
   SliceMaker(const synth::ScannerConfig& config, const SliceOptions& options);
 
-  /// Caps of the slices of a source with these options. With a firing table they do not fix the
-  /// width, because each slice has its own.
+  /// Returns the caps of slices that are made with these options. They have no width if the sensor
+  /// has a firing table, because each slice then has a different width.
   static CloudInfo InfoFor(const synth::ScannerConfig& config, const SliceOptions& options);
 
-  /// Time at which the first column of the next slice is sampled.
+  /// Returns the time at which the first column of the next slice is sampled.
   Duration NextTime() const { return scanner_.ColumnTime(scan_, FirstColumn()); }
-  /// Time at which the next slice ends.
+  /// Returns the time at which the next slice ends.
   Duration NextEnd() const { return scanner_.ColumnTime(scan_, FirstColumn() + width_); }
   const synth::Trajectory& trajectory() const { return scanner_.trajectory(); }
   Duration LongestSlice() const;
   Duration period() const { return period_; }
-  /// Casts the next slice into a buffer with PTS, duration and slice meta. `begin` is NextTime()
-  /// since 1970.
+  /// Makes the next slice, with PTS, duration and slice meta. `begin` is NextTime() converted to a
+  /// time since 1970.
   BufferPtr Make(GstClockTime begin);
-  /// Caps of the last slice if each slice has its own, else null. The width is 0 if there are no
-  /// returns.
+  /// If each slice has different caps, returns those of the slice that was made last. Otherwise
+  /// returns null. The width in these caps is 0 if the slice has no returns.
   const CloudInfo* OwnInfo() const { return driver_ ? &driver_->info() : nullptr; }
-  /// Continues with the first slice of the scan that is being swept at `time`.
+  /// Continues with the first slice of the scan that is measured at `time`.
   void SkipTo(Duration time);
 
  private:
@@ -66,7 +68,7 @@ class SliceMaker {
   synth::Scanner scanner_;
   RangeProjection projection_;
   std::uint32_t slices_;
-  std::uint32_t width_;  // columns of a slice
+  std::uint32_t width_;  // number of columns in a slice
   std::size_t point_step_;
   std::vector<Extra> extras_;
   std::optional<DriverCloud> driver_;
