@@ -19,12 +19,12 @@
 
 namespace {
 
-/// Belongs to the streaming thread.
+/// The state of a decoder. It is used by the streaming thread only.
 struct State {
   lidar::codec::CloudFormat format;
-  bool has_points = false;                                 // instead of ranges
-  std::optional<lidar::codec::SliceDecoder> decoder;       // for ranges
-  std::optional<lidar::codec::cloud::ExactDecoder> cloud;  // for points
+  bool has_points = false;                                 // true for points, false for ranges
+  std::optional<lidar::codec::SliceDecoder> decoder;       // only for ranges
+  std::optional<lidar::codec::cloud::ExactDecoder> cloud;  // only for points
 };
 
 }  // namespace

@@ -103,7 +103,7 @@ struct State {
   std::mutex mutex;  // guards settings
   LidarEncSettings settings;
 
-  // Belong to the streaming thread.
+  // The members below are used by the streaming thread only.
   LidarEncCoder coder;
   bool warned_of_fields = false;
 };
@@ -121,8 +121,8 @@ GST_ELEMENT_REGISTER_DEFINE(lidarenc, "lidarenc", GST_RANK_NONE, gst_lidar_enc_g
 
 static LidarEncCoder& CoderOf(GstLidarEncoder* base) { return GST_LIDAR_ENC(base)->state->coder; }
 
-/// Returns what receivers get exactly: the points' order, and fields named in the settings.
-/// `missing` gets the names that `fields` lack.
+/// Returns what must be coded without loss: the order of the points, and the fields that the
+/// settings name. Appends to `missing` the names of fields that `fields` does not have.
 static lidar::codec::cloud::ExactChoice ExactChoiceOf(const LidarEncSettings& settings,
                                                       const lidar::PointFields& fields,
                                                       std::string* missing) {
@@ -141,7 +141,7 @@ static lidar::codec::cloud::ExactChoice ExactChoiceOf(const LidarEncSettings& se
   return choice;
 }
 
-/// Warns once if `fields` or `keep-order` asks for the impossible.
+/// Posts a warning, but only once, if the properties fields or keep-order cannot be followed.
 static void WarnOfFields(GstLidarEncoder* base, const LidarEncSettings& settings, bool ranges,
                          const std::string& missing, const lidar::PointFields& fields) {
   State& state = *GST_LIDAR_ENC(base)->state;

@@ -47,14 +47,15 @@ void LidarEncCoder::Load(const GstLidarRawSlice& raw, std::optional<unsigned> ef
            : cloud_->Load(points, with_intensity_);
 }
 
-/// Keeps the blocks of the last encoding, which was sent. Call it when no other encoding of the
-/// slice can follow.
+/// Keeps the blocks of the last encoding, which is the encoding that was sent. Must be called when
+/// the slice will not be encoded again.
 void LidarEncCoder::KeepBlocks() {
   keeper_.OnEncoded(std::move(slice_.blocks));
   slice_.blocks.clear();
 }
 
-/// Reports the time of the last slice to `control_`. Call it before the slice's coder is replaced.
+/// Reports to `control_` how long the encoding of the last slice took. Must be called before the
+/// coder of this slice is replaced.
 void LidarEncCoder::MeasureEffort() {
   if (automatic_ && spent_ > Duration{0}) control_.OnSlice(sweep_, returns(), spent_);
   spent_ = {};

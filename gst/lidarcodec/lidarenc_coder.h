@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The coder of lidarenc: codes slices with the effort that time allows, and keeps blocks for
-// references.
+// The coder of lidarenc. It spends as much effort on a slice as time allows, and keeps blocks that
+// later slices may refer to.
 #pragma once
 #include <optional>
 #include <string>
@@ -17,29 +17,30 @@
 
 namespace lidar::gst {
 
-/// For one thread at a time.
+/// Codes the slices of a stream. Only one thread at a time may use it.
 class LidarEncCoder {
  public:
-  /// Returns false if `info` has neither ranges of a sensor nor points. Keeps the measured speed of
-  /// the machine. Keeps the coder of points if only the size of the clouds changes. `exact` is for
-  /// points only.
+  /// Sets the format of later slices. Returns false if the cloud has neither the ranges of a sensor
+  /// nor points. The measured speed of the machine is kept. The coder of points is also kept if
+  /// only the size of the clouds changes. `exact` is only used for points.
   bool SetFormat(const CloudInfo& info, bool with_intensity,
                  const codec::cloud::ExactChoice& exact);
-  /// Loads the slice. Without `effort` it chooses the effort that time allows.
+  /// Loads a slice. If `effort` is empty, chooses the highest effort that time allows.
   void Load(const GstLidarRawSlice& raw, std::optional<unsigned> effort);
-  /// Lets the loaded slice refer to blocks that the receiver has, and later slices to blocks of it,
-  /// if `remembers` is true.
+  /// Allows the loaded slice to refer to blocks that the receiver has, and later slices to refer to
+  /// blocks of this slice. If `remembers` is false, allows neither.
   void Link(const GstLidarRawSlice& raw, bool remembers, Duration key_interval);
-  /// Describes the loaded slice; valid until the next Load().
+  /// Describes the loaded slice. The description is valid until the next Load().
   void Describe(GstLidarLoadedSlice* loaded);
-  /// Returns true if slices are ranges of a sensor, and false if they are points in any order.
+  /// Returns true if slices are coded as ranges of a sensor, and false if they are coded as points.
   bool codes_ranges() const { return encoder_.has_value(); }
   bool keeps_order() const { return exact_.keeps_order; }
   rate::ErrorBound Bound() const;
   void Thin(const std::vector<bool>& kept);
   GstLidarEncodeResult Encode(const GstLidarEncodeSettings& settings, GByteArray* bytes,
                               GstLidarCodedSlice* coded);
-  /// Decodes as a receiver would, for the check of the error: `points` are GstLidarPoint.
+  /// Decodes a slice like a receiver, to check its error. Sets `points` to an array of
+  /// GstLidarPoint.
   bool Decode(ByteView stream, GArray* points);
   void OnAcknowledged(guint receiver, guint scan_id, guint slice_index);
   void OnKeyRequest();
@@ -52,9 +53,9 @@ class LidarEncCoder {
 
   codec::CloudFormat format_;
   double scans_per_second_ = 10;
-  std::optional<codec::SliceEncoder> encoder_;       // of ranges,
-  std::optional<codec::cloud::CloudEncoder> cloud_;  // or of points
-  std::optional<codec::SliceDecoder> decoder_;       // for Decode()
+  std::optional<codec::SliceEncoder> encoder_;       // used for ranges
+  std::optional<codec::cloud::CloudEncoder> cloud_;  // used for points
+  std::optional<codec::SliceDecoder> decoder_;       // used by Decode()
   bool with_intensity_ = false;
   codec::cloud::ExactChoice exact_;
   std::string mode_;
@@ -62,9 +63,9 @@ class LidarEncCoder {
   codec::ReferenceKeeper keeper_;
 
   codec::EffortControl control_;
-  bool automatic_ = false;  // the loaded slice has the effort of `control_`
-  Duration sweep_{};        // of the loaded slice
-  Duration spent_{};        // for all encodings of the loaded slice
+  bool automatic_ = false;  // true if `control_` chose the effort for the loaded slice
+  Duration sweep_{};        // duration of the loaded slice
+  Duration spent_{};        // time spent on all encodings of the loaded slice
 };
 
 }  // namespace lidar::gst

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The plugin lidarcodec: our own coder of spinning sensors' scans.
+// Registers the elements of the plugin lidarcodec, our own coder for the clouds of LiDAR sensors.
 #include "gst/lidar/gstlidar.h"
 
 GST_ELEMENT_REGISTER_DECLARE(lidardec)
