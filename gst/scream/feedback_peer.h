@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The address from which the peer's feedback comes. A new address means a new path.
+// Tracks the address from which the peer's feedback comes. If the address changes, the packets may
+// take a new network path.
 #pragma once
 #include <gio/gio.h>
 
@@ -12,10 +13,12 @@ namespace lidar::gst {
 
 class FeedbackPeer {
  public:
-  /// A new address becomes the peer's when the old one has been silent for this time.
+  /// Feedback from a new address moves the peer to this address only after the old address has been
+  /// silent for this time.
   static constexpr Duration kOldPeerSilence = std::chrono::milliseconds(500);
 
-  /// Takes the source of accepted feedback, which may be NULL. Returns true if the peer has moved.
+  /// Call it with the source address of each accepted report; `from` may be NULL. Returns true if
+  /// the peer has moved to a new address.
   bool OnFeedback(Time now, GSocketAddress* from) {
     if (from == nullptr) return false;
     if (peer_ && SameAddress(from, peer_.get())) {

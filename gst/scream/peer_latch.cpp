@@ -9,11 +9,11 @@
 namespace lidar::gst {
 namespace {
 
-// Limit for steps of a new peer's sequence numbers. It is large, because a sender without feedback
-// drops most packets.
+// The sequence numbers of a new peer may skip fewer than this many packets. The limit is large
+// because a sender that gets no feedback drops most packets.
 constexpr int kMaxGap = 500;
-// The same limit for a known peer. It is larger, because a sender that moved may have lost many
-// packets.
+// The same limit for the SSRC of a silent peer. It is larger because many packets may be lost while
+// a sender moves to another address.
 constexpr int kMaxKnownGap = 1 << 14;
 constexpr std::size_t kMostSources = 64;
 
@@ -35,8 +35,8 @@ void PeerLatch::Peer::Add(Time now, const Packet& packet) {
     last.back() = now;
     went_on = std::min(went_on + 1, kProbation);
   }
-  // The numbers of an SSRC may go back after kStreamTime only: otherwise repeated packets would
-  // count as a stream.
+  // The expected number of an SSRC steps back only after the SSRC has been silent for kStreamTime.
+  // Otherwise a few packets, sent again and again, would count as a stream.
   if (goes_on || found == sources.end() || now - found->second.at > kStreamTime) {
     if (found == sources.end() && sources.size() >= kMostSources) sources.erase(sources.begin());
     sources[packet.ssrc] = {static_cast<std::uint16_t>(packet.seq + 1), now};
@@ -70,8 +70,8 @@ Time PeerLatch::LastHeard() const {
   return last;
 }
 
-/// If the first link is silent, the link that sends takes its place, so that the peer keeps its
-/// standing against others.
+/// Accepts a packet that arrived by `link`. If the first link is silent, `link` becomes the first
+/// link, because only packets of the first link count for the standing of the peer.
 PeerLatch::Verdict PeerLatch::OnLinkPacket(Time now, const Packet& packet, Link* link) {
   link->at = now;
   if (now - peer_.at >= kPeerSilence) {
@@ -91,8 +91,8 @@ void PeerLatch::NoteCopies(const Packet& packet) {
     if (c.digests.Take(packet.digest)) ++c.copies;
 }
 
-/// Makes the candidate a link. If there are too many links, it replaces the link that has been
-/// silent for longest. Returns false if all links send.
+/// Makes the candidate a link of the accepted peer. If there are too many links, the candidate
+/// replaces the link that has been silent for longest. Returns false if no link is silent.
 bool PeerLatch::Join(Time now, Peer* candidate) {
   if (links_.size() + 1 >= kMaxLinks) {
     const auto oldest = std::min_element(links_.begin(), links_.end(),
@@ -107,9 +107,9 @@ bool PeerLatch::Join(Time now, Peer* candidate) {
   return true;
 }
 
-/// Finds or adds a candidate. If there are too many, a new candidate replaces the one with the
-/// lowest standing. Among candidates of equal standing it replaces the one that has been silent for
-/// longest.
+/// Returns the candidate with the address `from`, which is added if there is none. If there are too
+/// many candidates, the new one replaces the candidate with the lowest standing. Among candidates
+/// of equal standing, it replaces the candidate that has been silent for longest.
 PeerLatch::Peer& PeerLatch::CandidateOf(Time now, GSocketAddress* from) {
   for (Peer& c : candidates_)
     if (SameAddress(c.address.get(), from)) return c;
@@ -134,8 +134,8 @@ void PeerLatch::Restart() {
   *this = std::move(next);
 }
 
-/// Returns true if the packet continues an SSRC of a silent peer. Nothing can continue the SSRCs of
-/// a peer that sends.
+/// Returns true if the packet continues an SSRC of a silent peer. A packet that continues an SSRC
+/// of a peer that still sends does not count.
 bool PeerLatch::IsKnown(Time now, const Packet& packet) const {
   const auto goes_on = [&](const Sources& sources) {
     const auto found = sources.find(packet.ssrc);
@@ -148,15 +148,16 @@ bool PeerLatch::IsKnown(Time now, const Packet& packet) const {
 bool PeerLatch::Wins(const Peer& candidate, Time now) const {
   if (candidate.went_on < kProbation) return false;
   const Standing shown = candidate.standing(now);
-  // A stream alone does not win at the start: it may be another link of the same sender.
+  // During kStart after the peer's first packet, a stream is not enough to replace the peer,
+  // because the stream may be another link of the same sender.
   const Standing least = now - peer_.since < kStart ? Standing::kStream : Standing::kNothing;
   if (!IsSilent(now)) return shown > std::max(peer_.standing(now), least);
   const bool needs_slices = peer_.has_slices && now - LastHeard() < kLongSilence;
   return shown >= (needs_slices ? Standing::kSlices : Standing::kStream);
 }
 
-/// Makes the candidate the peer. The old peer stays known if it is silent, and is forgotten if it
-/// still sends.
+/// Makes the candidate the accepted peer. Remembers the SSRCs of the old peer only if the old peer
+/// is silent.
 void PeerLatch::Promote(Time now, Peer candidate) {
   if (IsSilent(now)) Remember(peer_);
   for (auto it = known_.begin(); it != known_.end();) {
@@ -182,7 +183,8 @@ PeerLatch::Verdict PeerLatch::OnPacket(Time now, const Packet& packet) {
       peer_.is_known = peer_.has_slices = true;
       known_.erase(packet.ssrc);
     }
-    // Keeps the address object: SameAddress() is fast if the next packet has the same object.
+    // Keeps the packet's address object, because SameAddress() is fast if the next packet has the
+    // same object.
     if (packet.from != nullptr && packet.from != peer_.address.get())
       peer_.address = RefAddress(packet.from);
     peer_.Add(now, packet);

@@ -16,8 +16,7 @@ constexpr guint8 kReceiverReport = 201;
 constexpr guint8 kBye = 203;
 constexpr std::size_t kMaxSources = 31;
 
-/// Returns the length of the header extension behind the CSRCs, or nothing if the buffer is too
-/// short.
+/// Returns the size of the header extension at `offset`, or nothing if the buffer is too short.
 std::optional<gsize> ExtensionSize(GstBuffer* buffer, gsize offset) {
   guint8 raw[4];
   if (gst_buffer_extract(buffer, offset, raw, sizeof raw) != sizeof raw) return std::nullopt;

@@ -40,7 +40,7 @@ void PlaySrtp(BinState& state, GstStateChange change) {
 void EndSrtp(BinState& state) {
   std::unique_lock lock(state.mutex);
   const std::shared_ptr<SrtpLayer> srtp = std::move(state.srtp);
-  lock.unlock();  // the layer is released without the lock
+  lock.unlock();  // the layer is destroyed without the lock
 }
 
 void CloseBin(BinState& state, std::initializer_list<GstElement*> children, bool close_given) {

@@ -15,8 +15,8 @@
 
 namespace lidar::gst {
 
-/// Valid from READY to NULL. `mutex` guards the members, and is not held during calls into
-/// children.
+/// The state of a bin that is in READY or above. `mutex` guards the members. It is not held during
+/// calls into children.
 struct BinState {
   std::mutex mutex;
   SocketInUse used;
@@ -24,42 +24,45 @@ struct BinState {
   std::string srtp_key;  // value of the property when the key was read
 };
 
-/// Creates a child with its factory's name and adds it. Returns NULL if the plugin is missing.
+/// Creates a child, named after its factory, and adds it to the bin. Returns NULL if the plugin is
+/// missing.
 GstElement* AddChild(GstElement* bin, const char* factory);
 struct Child {
   GstElement* element;
   const char* factory;
 };
-/// Returns false, with an error on the bus, if one of `children` is missing.
+/// Returns true if all `children` exist. If one is missing, posts an error message and returns
+/// false.
 bool HasChildren(GstElement* bin, std::initializer_list<Child> children);
-/// Sets a child's socket (NULL: none), which the child does not own.
+/// Sets the socket that the child uses but does not own. NULL removes the socket.
 void GiveSocket(GstElement* child, GSocket* socket);
-/// Starts and stops DTLS with PLAYING.
+/// Starts DTLS when the bin changes to PLAYING, and stops DTLS at other state changes.
 void PlaySrtp(BinState& state, GstStateChange change);
-/// Removes the layer's elements from the bin.
+/// Ends the SRTP layer, which removes its elements from the bin.
 void EndSrtp(BinState& state);
-/// Takes the socket from the children, ends SRTP and closes the socket. A socket of the user is
-/// closed only if the user asked for it.
+/// Ends SRTP, removes the socket from the children and closes the socket. A socket that the user
+/// has set is closed only if `close_given` is true.
 void CloseBin(BinState& state, std::initializer_list<GstElement*> children, bool close_given);
-/// Sends a datagram through the interface (empty: by the routes), or drops it if it cannot leave at
-/// once.
+/// Sends a datagram through `interface` or, if it is empty, through the interface that the routes
+/// select. Drops the datagram if it cannot be sent at once.
 void SendDatagram(GSocket* socket, GSocketAddress* to, const std::string& interface,
                   GstBuffer* datagram);
-/// Bytes of the UDP and IP headers of a packet to `peer`.
+/// Returns the size of the UDP and IP headers of a packet to `peer` [bytes].
 guint OverheadOf(GSocketAddress* peer);
-/// Returns `stats` of the child, or NULL without a child. Transfer full.
+/// Returns the property stats of the child, or NULL if there is no child.
 StructurePtr StatsOf(GstElement* child);
-/// Copies a field of the child's statistics, if there is one.
+/// Copies a field of the child's statistics to `to`, if the field exists.
 void CopyStat(GstElement* child, const char* field, GstStructure* to);
 
-/// Returns the child that has the properties of a table's rows.
+/// Returns the child that has the properties which a bin forwards, or null if there is no child.
 template <class Self, GstElement* Self::*child>
 GObject* ChildOf(GObject* bin) {
   GstElement* element = reinterpret_cast<Self*>(bin)->*child;
   return element == nullptr ? nullptr : G_OBJECT(element);
 }
 
-/// Gives a running bin the new srtp-key. A refused key changes nothing.
+/// Gives a running bin the new value of srtp-key. If the key is refused, the property keeps its old
+/// value.
 template <class Self>
 void ChangeSrtpKey(GObject* bin, GParamSpec* spec) {
   if (g_strcmp0(spec->name, "srtp-key") != 0) return;

@@ -48,8 +48,9 @@ struct State : BinState {
 
 }  // namespace
 
-/// A ghost pad for a sink pad of screamtx or, with several links, for a pad of each link's
-/// screamtx. It has the properties of the first link's pad, and the pads of the other links follow.
+/// A ghost pad whose target is a sink pad of screamtx or, if there are several links, a sink pad of
+/// the bond. It has the properties of the first link's pad. The pads of the other links have the
+/// same values.
 G_DECLARE_FINAL_TYPE(GstLidarScreamSinkPad, gst_lidar_scream_sink_pad, GST, LIDAR_SCREAM_SINK_PAD,
                      GstGhostPad)
 struct _GstLidarScreamSinkPad {
@@ -116,7 +117,8 @@ static guint Estimate(GObject* object) {
   return bps;
 }
 
-/// A screamsink sends a BYE at the end, and a report each second, unless set otherwise.
+/// Returns the defaults of the screamtx in a screamsink, which sends a BYE at the end, and a report
+/// every second.
 static const TxSettings& TxDefaults() {
   static const TxSettings defaults = [] {
     TxSettings s;
@@ -170,7 +172,8 @@ static const std::array<Property<SinkSettings>, 27> kProperties = {{
     Within<&SinkSettings::srtp>(SrtpRows(), "dtls-peer-certificate"),
 }};
 
-/// The rule for feedback: it comes from `peer` or, if not `strict`, from the peer's host.
+/// The rule by which feedback is accepted: it must come from the address `peer` or, if not
+/// `strict`, from the host of `peer`.
 struct FeedbackRule {
   SharedSocketAddress peer;
   bool strict;
@@ -181,8 +184,9 @@ static FeedbackRule FeedbackRuleOf(State& state) {
   return {state.peer, state.settings.strict_feedback};
 }
 
-/// Returns true if `buffer` comes from the receiver of a link, and counts it otherwise. A multicast
-/// group has many receivers, so all addresses count.
+/// Returns true if `buffer` comes from the receiver at `peer`. Otherwise counts it as foreign. If
+/// `peer` is a multicast group, all addresses are accepted, because the group may have many
+/// receivers.
 static bool IsFeedback(State& state, GstBuffer* buffer, GSocketAddress* peer, bool strict) {
   GSocketAddress* from = SourceOf(buffer);
   const auto is_group = [peer] {
@@ -224,7 +228,7 @@ static void ForEachGhost(GstLidarScreamSink* self, const std::function<PadPtr(Gs
   }
 }
 
-/// Puts a bond between the pads and the screamtx of each link.
+/// Inserts a bond between the ghost pads and the screamtx of each link.
 static void Bond(GstLidarScreamSink* self, const std::vector<OpenLink>& open,
                  const BondSettings& settings) {
   const auto takes = [self](GstBuffer* buffer, GSocketAddress* peer) {
@@ -245,8 +249,8 @@ static void Unbond(GstLidarScreamSink* self) {
   if (links) ForEachGhost(self, [&](GstPad* sink) { return links->Remove(sink); });
 }
 
-/// Opens the only link, or all links into `links`. Returns the first link, which has no socket
-/// after an element error.
+/// Opens the only link, or opens all links and stores them in `links`. Returns the first link. On
+/// failure, posts an error message and returns a link without a socket.
 static OpenLink OpenFirst(GstLidarScreamSink* self, const SinkSettings& s,
                           std::vector<OpenLink>* links) {
   OpenLink first;
@@ -267,7 +271,7 @@ static std::shared_ptr<SinkLinks> LinksOf(GstLidarScreamSink* self) {
   return self->state->links;
 }
 
-/// Returns the pads between which SRTP is inserted; `open` has all links.
+/// Returns the pads between which SRTP is inserted. `open` has all links.
 static SrtpPlaces SrtpPlacesOf(GstLidarScreamSink* self, const std::vector<OpenLink>& open) {
   std::vector<SrtpPlace> places;
   const std::shared_ptr<SinkLinks> links = LinksOf(self);
@@ -283,8 +287,8 @@ static SrtpPlaces SrtpPlacesOf(GstLidarScreamSink* self, const std::vector<OpenL
   return {GST_ELEMENT(self), true, std::move(places), send_dtls};
 }
 
-/// Holds packets back until there is a key. Otherwise the SRTP layer would drop them behind
-/// screamtx, which would count them as lost.
+/// Holds back the packets of `pad` until there is a key. Otherwise the SRTP layer would drop the
+/// packets after screamtx has sent them, and screamtx would count them as lost.
 static void AwaitKey(GstLidarScreamSink* self, GstPad* pad) {
   std::unique_lock lock(self->state->mutex);
   const std::shared_ptr<SrtpLayer> srtp = self->state->srtp;
@@ -292,7 +296,7 @@ static void AwaitKey(GstLidarScreamSink* self, GstPad* pad) {
   if (srtp) KeyGate::Guard(srtp->gate(), pad);
 }
 
-/// Opens the socket for both directions and hands it to the children.
+/// Opens the socket, which is used in both directions, and gives it to the children.
 static bool Open(GstLidarScreamSink* self) {
   State& state = *self->state;
   const SinkSettings s = Snapshot(state);
@@ -313,7 +317,8 @@ static bool Open(GstLidarScreamSink* self) {
   std::shared_ptr<SrtpLayer> srtp;
   const std::vector<OpenLink> all = links.empty() ? std::vector<OpenLink>{first} : links;
   if (!StartSrtp(s.srtp, SrtpPlacesOf(self, all), &srtp)) return false;
-  // A bond protects packets before screamtx, which then measures them with their SRTP tags.
+  // A bond protects packets before they reach screamtx, so screamtx already counts the SRTP tags in
+  // their size.
   const bool adds = srtp && links.size() < 2;
   const guint overhead = OverheadOf(peer.get()) + (adds ? srtp->overhead() : 0);
   g_object_set(self->tx, "packet-overhead", overhead, nullptr);
@@ -353,7 +358,8 @@ static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange chan
   }
   GstStateChangeReturn result =
       GST_ELEMENT_CLASS(gst_lidar_scream_sink_parent_class)->change_state(element, change);
-  // NO_PREROLL comes from the feedback's source, not from the media.
+  // NO_PREROLL comes from the source of the feedback. The bin does not return it, because the bin
+  // is a sink of media.
   if (result == GST_STATE_CHANGE_NO_PREROLL) result = GST_STATE_CHANGE_SUCCESS;
   if (change == GST_STATE_CHANGE_READY_TO_NULL)
     Close(self);
@@ -391,7 +397,8 @@ static void ReleasePad(GstElement* element, GstPad* pad) {
   gst_element_remove_pad(element, pad);
 }
 
-/// The child proxy lists pads after the elements of the bin, so that sink_0::priority can be set.
+/// Returns GstBin's implementation, which lists the elements of the bin. The child proxy of
+/// screamsink lists its pads after these elements, so that sink_0::priority can be set.
 static GstChildProxyInterface* BinChildProxy() {
   return static_cast<GstChildProxyInterface*>(
       g_type_interface_peek(gst_lidar_scream_sink_parent_class, GST_TYPE_CHILD_PROXY));

@@ -98,7 +98,7 @@ static const std::array<Property<SrcSettings>, 22> kProperties = {{
     Within<&SrcSettings::srtp>(SrtpRows(), "dtls-peer-certificate"),
 }};
 
-/// Opens the socket for both directions and hands it to the children.
+/// Opens the socket, which is used in both directions, and gives it to the children.
 static bool Open(GstLidarScreamSrc* self) {
   State& state = *self->state;
   const SrcSettings s = Snapshot(state);
@@ -147,7 +147,7 @@ static GstStateChangeReturn ChangeState(GstElement* element, GstStateChange chan
   return result;
 }
 
-/// Returns true if the error is that a pad is not linked.
+/// Returns true if `error` was posted because a pad is not linked.
 static bool SaysNotLinked(GstMessage* error) {
   const GstStructure* details = nullptr;
   gst_message_parse_error_details(error, &details);
@@ -156,7 +156,7 @@ static bool SaysNotLinked(GstMessage* error) {
          flow == GST_FLOW_NOT_LINKED;
 }
 
-/// Replaces a source's general error about its unlinked pad by one that names what to link.
+/// Replaces the source's error about its unlinked pad by an error that says what to link.
 static void HandleMessage(GstBin* bin, GstMessage* message) {
   auto* self = GST_LIDAR_SCREAM_SRC(bin);
   const PadPtr src(gst_element_get_static_pad(GST_ELEMENT(bin), "src"));
@@ -178,7 +178,8 @@ static void OnPadAdded(GstElement*, GstPad* pad, GstElement* bin) {
   GstPadTemplate* templ = gst_element_class_get_pad_template(GST_ELEMENT_GET_CLASS(bin), "src_%u");
   GstPad* ghost = gst_ghost_pad_new_from_template(name.get(), pad, templ);
   gst_pad_set_active(ghost, TRUE);
-  // Stores the events before the pad is visible, because gst-launch links by caps.
+  // The ghost pad gets its sticky events before it is added to the bin, because gst-launch links a
+  // new pad by its caps.
   gst_pad_sticky_events_foreach(
       pad,
       [](GstPad*, GstEvent** event, gpointer to) -> gboolean {

@@ -24,8 +24,8 @@ std::optional<guint> ParsePort(const std::string& text) {
   return port >= 1 && port <= 65535 ? std::optional(static_cast<guint>(port)) : std::nullopt;
 }
 
-/// Returns the address as GLib writes it, or an empty text if `text` is no address. A link-local
-/// address keeps its interface (fe80::1%eth0).
+/// Returns the IP address in the form in which GLib writes it, or an empty text if `text` is not an
+/// IP address. A link-local address keeps its interface (fe80::1%eth0).
 std::string AddressOf(const std::string& text) {
   const std::string host = WithoutBrackets(text);
   const auto scope = std::min(host.find('%'), host.size());

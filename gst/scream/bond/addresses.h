@@ -10,16 +10,18 @@
 
 namespace lidar::gst {
 
-/// A peer, and the interface or local address by which packets to it leave (empty: any).
+/// The address of a peer, and the network interface or local address from which packets to this
+/// peer are sent. If neither is given, the kernel chooses the interface.
 struct BondAddress {
   UdpTarget target;
   std::string interface;
-  std::string text;  // as the property has it
+  std::string text;  // as it is written in the property
 };
 
-/// Parses HOST:PORT, HOST:PORT@INTERFACE or HOST:PORT@LOCAL-ADDRESS, separated by commas. An IPv6
-/// host must be in brackets, and an IPv6 local address may be. Returns nothing and sets the error
-/// for other text, more than kMaxLinks, or a repeated link.
+/// Parses links of the form HOST:PORT, HOST:PORT@INTERFACE or HOST:PORT@LOCAL-ADDRESS, separated by
+/// commas. An IPv6 host must be in brackets; an IPv6 local address may be in brackets. If the text
+/// has another form, a repeated link or more than kMaxLinks links, sets `error` and returns
+/// nothing.
 std::optional<std::vector<BondAddress>> ParseBondAddresses(const std::string& text,
                                                            std::string* error);
 

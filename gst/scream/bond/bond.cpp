@@ -21,7 +21,7 @@ struct BondState {
   std::shared_ptr<BondShared> shared;
   std::vector<GstLidarScreamTx*> links;
   std::vector<std::unique_ptr<BondStream>> streams;  // guarded by shared->mutex
-  std::vector<std::unique_ptr<BondStream>> removed;  // kept, because a link's call may use them
+  std::vector<std::unique_ptr<BondStream>> removed;  // not freed: a link's call may still use them
   guint next_pad = 0;
   std::function<void()> watch;
   std::condition_variable wake;
@@ -54,7 +54,8 @@ static BondStream& StreamOf(GstPad* pad) {
 
 static BondState& BondOf(gpointer self) { return *GST_LIDAR_SCREAM_BOND(self)->state; }
 
-/// A failing link stops the stream only if no other link takes the packet.
+/// Pushes a packet to the links that the scheduler chooses. Returns an error only if all these
+/// links fail.
 static GstFlowReturn BondChain(GstPad* pad, GstObject* parent, GstBuffer* buffer) {
   BufferPtr packet(buffer);
   BondStream& stream = StreamOf(pad);
@@ -68,8 +69,8 @@ static GstFlowReturn BondChain(GstPad* pad, GstObject* parent, GstBuffer* buffer
   return best;
 }
 
-/// Waits while another link may still deliver packets, because the first BYE ends the receiver's
-/// streams.
+/// Waits while a link may still deliver packets. Without this wait, the BYE of the fastest link
+/// would end the receiver's streams before the packets of the other links arrive.
 static void AwaitArrivals(BondState& state) {
   BondShared& shared = *state.shared;
   std::unique_lock lock(shared.mutex);
@@ -91,7 +92,8 @@ static gboolean BondSinkEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   return taken;
 }
 
-/// Combines targets, drops repeated requests, and passes other events on.
+/// Combines the targets of the links, drops repeated requests for key units, and passes other
+/// events on.
 static gboolean BondSrcEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   BondStream& stream = StreamOf(pad);
   BondShared& shared = *BondOf(parent).shared;

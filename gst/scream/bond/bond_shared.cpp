@@ -17,13 +17,14 @@ using bonding::Scheduler;
 namespace {
 
 constexpr DataSize kHeaders = DataSize::Bytes(28);  // UDP and IP
-// A target is sent to the encoder if it differs by this part from the last one sent.
+// A new target is sent to the encoder only if it differs from the last one by at least this
+// fraction.
 constexpr double kWorthTelling = 0.02;
-// Requests for key units within this time come from several links and count as one, because a
-// single link requests at longer intervals.
+// Requests for key units that follow each other within this time count as one request. They come
+// from several links, because a single link waits longer between its requests.
 constexpr Duration kKeyUnitInterval = std::chrono::milliseconds(400);
 
-constexpr std::size_t kMaxMisdirected = 64;  // reports held for the next tick
+constexpr std::size_t kMaxMisdirected = 64;  // reports that wait for the next tick
 
 class BondLink : public TxLink {
  public:
@@ -47,7 +48,8 @@ class BondLink : public TxLink {
     const std::lock_guard lock(bond_->mutex);
     auto own = bond_->scheduler.OnFeedback(now, index_, report);
     if (own || bond_->misdirected.size() >= kMaxMisdirected) return own;
-    // The other screamtx has its own lock, so the bond's thread hands the report over.
+    // This thread holds the lock of its own screamtx, and the screamtx that owns the report has
+    // another lock. The bond's thread, which holds neither, passes the report on.
     if (const auto owner = bond_->scheduler.OwnerOf(report))
       bond_->misdirected.push_back({*owner, report});
     return own;
@@ -83,7 +85,7 @@ void BondShared::KeepLocked(Time now, PacketId id, GstBuffer* buffer, BondStream
 
 bonding::LinkSet BondShared::Schedule(GstBuffer* buffer, BondStream* stream) {
   const auto header = ReadRtpHeader(buffer);
-  if (!header) return 1;  // a buffer that is not RTP leaves by the first link
+  if (!header) return 1;  // a buffer that is not RTP is sent over the first link
   const Time now = Now();
   const PacketId id{header->ssrc, header->seq};
   const auto size = static_cast<std::int64_t>(gst_buffer_get_size(buffer));

@@ -35,8 +35,8 @@ std::string Interfaces::Lacks(const BondAddress& link, GSocketFamily family) con
     const auto found = by_name.find(link.interface);
     if (found == by_name.end()) return "there is no interface " + link.interface;
     if (!found->second.up) return "the interface " + link.interface + " is down";
-    // The kernel would send from an address of another interface if this one has none of the
-    // family.
+    // If this interface has no address of the family, the kernel would send from the address of
+    // another interface.
     if (found->second.families.count(family) == 0)
       return "the interface " + link.interface + " has no IPv" +
              (family == G_SOCKET_FAMILY_IPV6 ? "6" : "4") + " address";

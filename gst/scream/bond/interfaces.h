@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The machine's interfaces and addresses, and which of them a link lacks.
+// The network interfaces and addresses of this machine, and a check whether a link can use them.
 #pragma once
 #include <gio/gio.h>
 
@@ -14,13 +14,13 @@ namespace lidar::gst {
 class Interfaces {
  public:
   static Interfaces Now();
-  /// Returns the reason why the link cannot carry packets for a peer of that family, or an empty
-  /// text if it can carry them.
+  /// Returns an empty text if the link can send packets to a peer of `family`, else the reason why
+  /// it cannot.
   std::string Lacks(const BondAddress& link, GSocketFamily family) const;
 
   struct Interface {
     bool up = false;
-    std::set<GSocketFamily> families;  // of its addresses
+    std::set<GSocketFamily> families;  // address families of the interface
   };
   std::map<std::string, Interface> by_name;
   std::set<std::string> addresses;

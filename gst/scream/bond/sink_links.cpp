@@ -33,11 +33,11 @@ GType BondTargetType() {
   return type;
 }
 
-// Time after which a link whose packets failed is tried again.
+// A link that failed to send packets is tried again after this time.
 constexpr gint64 kRetryUs = 1 * G_USEC_PER_SEC;
 
-/// Opens the link's socket. If the host is not found or no socket opens, returns a link without a
-/// socket, and the reason.
+/// Opens the link's socket. If the host is not found or the socket cannot be opened, returns a link
+/// without a socket and sets `why` to the reason.
 OpenLink Open(const BondAddress& address, std::string* why) {
   OpenLink link{address, nullptr, nullptr, true};
   GError* error = nullptr;
@@ -57,7 +57,7 @@ GSocketFamily FamilyOf(const OpenLink& link) {
   return g_socket_address_get_family(link.peer.get());
 }
 
-/// State of the filter of a link's feedback.
+/// The data of FilterLink(), which filters the feedback of a link.
 struct FeedbackOfLink {
   SinkLinks::Takes takes;
   SharedSocketAddress peer;
@@ -70,7 +70,8 @@ GstPadProbeReturn FilterLink(GstPad*, GstPadProbeInfo* info, gpointer data) {
   });
 }
 
-/// Keeps the properties of `to`, except `own`, equal to those of `from`, which has the same class.
+/// Binds the properties of `to`, except the property `own`, to those of `from`, which has the same
+/// class.
 void BindProperties(GObject* from, GObject* to, std::string_view own) {
   guint n = 0;
   GParamSpec** specs = g_object_class_list_properties(G_OBJECT_GET_CLASS(from), &n);

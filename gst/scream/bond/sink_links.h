@@ -30,11 +30,11 @@ struct OpenLink {
   SharedSocketAddress peer;
   bool usable = true;
 };
-/// Opens the links of `addresses`; a warning names each link that cannot carry packets now. Posts
-/// an element error and returns nothing if no link can, or if the text is wrong.
+/// Opens the links in `addresses`. Posts a warning for each link that cannot send packets now. If
+/// no link can, or if the text is wrong, posts an error message and returns no links.
 std::vector<OpenLink> OpenLinks(GstElement* bin, const std::string& addresses);
 
-/// The elements between the pads of a bin and the network: the bond, and each link's own elements.
+/// The elements between the pads of a bin and the network: the bond, and the elements of each link.
 class SinkLinks {
  public:
   struct Chain {
@@ -43,7 +43,8 @@ class SinkLinks {
     GstElement* src;
   };
 
-  /// Returns true if a link whose receiver is at `peer` takes the buffer as feedback.
+  /// A function that returns true if the buffer is feedback for the link whose receiver is at
+  /// `peer`.
   using Takes = std::function<bool(GstBuffer*, GSocketAddress* peer)>;
 
   SinkLinks(GstElement* bin, const Chain& first, const std::vector<OpenLink>& links,
@@ -52,32 +53,34 @@ class SinkLinks {
   SinkLinks(const SinkLinks&) = delete;
   SinkLinks& operator=(const SinkLinks&) = delete;
 
-  /// Adds a stream with the pad `tx_pad` of the first link. Returns the bond's pad, which takes the
-  /// stream's packets.
+  /// Adds a stream, for which the first link has the pad `tx_pad`. Returns the bond's pad that
+  /// receives the stream's packets.
   GstPad* Add(GstPad* tx_pad);
-  /// Removes a stream. Returns the first link's pad, which remains.
+  /// Removes a stream. Returns the stream's pad at the first link, which is not removed.
   PadPtr Remove(GstPad* sink);
-  /// The elements of each link, in the order of the links.
+  /// Returns the elements of each link, in the order of the links.
   const std::vector<Chain>& chains() const { return chains_; }
-  /// Returns true for a redundant warning: scream-link-changed already reports packets that cannot
-  /// be sent, and a silent link does not matter while another one works.
+  /// Returns true if a warning from the element `warns` is redundant. A warning of a link's sink is
+  /// redundant, because the message scream-link-changed reports packets that cannot be sent. A
+  /// warning of a link's screamtx is redundant while another link gets feedback.
   bool IsNoNews(GstObject* warns) const;
-  /// Sets the layer that protects packets before they come to the links.
+  /// Sets the layer that protects packets before they go to the links.
   void Protect(std::shared_ptr<SrtpLayer> layer) { BondProtect(bond_, std::move(layer)); }
   /// Adds the array `links` to `stats`.
   void AddStats(GstStructure* stats) const;
 
  private:
-  /// Numbers of packets that a link's socket sent and failed to send.
+  /// The number of packets that a link's socket has sent, and the number that it failed to send.
   struct Health {
     guint64 sent = 0;
     guint64 errors = 0;
     gint64 failed_us = 0;  // monotonic time of the last failure
   };
   void AddLink(const OpenLink& link);
-  /// Detects links that became unusable or usable.
+  /// Finds links that became usable or unusable, and posts a message about each of them.
   void Watch();
-  /// Returns true if a call in the last second found new errors and no new sent packet.
+  /// Returns true if a call in the last second found new send errors of `link` but no newly sent
+  /// packet.
   bool Fails(std::size_t link);
   void Change(std::size_t link, const std::string& trouble);
 

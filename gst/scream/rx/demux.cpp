@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Several streams behind screamrx: each SSRC has a pad, with caps from pt-map.
+// Splits the streams that screamrx receives: each SSRC has a pad, whose caps come from pt-map.
 #include <charconv>
 #include <string_view>
 #include <utility>
@@ -12,7 +12,8 @@
 namespace lidar::gst {
 namespace {
 
-// Greatest number of pads. Each new SSRC creates one, even a forged SSRC.
+// The greatest number of pads. A limit is needed because each new SSRC creates a pad, even if the
+// SSRC is forged.
 constexpr std::size_t kMaxRoutes = 1'024;
 
 bool IsLidar(const GstCaps* caps) {
@@ -29,7 +30,8 @@ CapsPtr CapsOfValue(const GValue* value) {
   return nullptr;
 }
 
-/// Payload types that look like RTCP with the marker bit (RFC 5761, section 4).
+/// Returns true for payload types that look like RTCP if the marker bit is set (RFC 5761, section
+/// 4).
 constexpr bool CollidesWithRtcp(unsigned type) { return type >= 64 && type <= 95; }
 
 /// Returns what is wrong with a field of pt-map, or NULL.
@@ -44,7 +46,8 @@ const char* FaultOf(std::string_view name, const GValue* value) {
   return nullptr;
 }
 
-/// Returns the caps of a payload type with the SSRC; NULL if pt-map has none.
+/// Returns the caps in pt-map for the packet's payload type, with the packet's SSRC added. Returns
+/// NULL if pt-map has no valid caps for it. The caller owns the caps.
 GstCaps* CapsOf(GstLidarScreamRx* self, const RtpHeader& header) {
   RxState& state = *self->state;
   if (CollidesWithRtcp(header.payload_type)) return nullptr;
@@ -68,7 +71,8 @@ gboolean CopyExceptCaps(GstPad*, GstEvent** event, gpointer to) {
   return TRUE;
 }
 
-/// Returns the SSRC, or the next number if another pad has its name already.
+/// Returns the number in the name of a new pad: `ssrc`, or the next higher number that is not in
+/// the name of another pad.
 guint32 FreePadNumber(GstLidarScreamRx* self, guint32 ssrc) {
   for (guint32 number = ssrc;; ++number) {
     const StringPtr name(g_strdup_printf("src_%u", number));
@@ -93,7 +97,8 @@ GstPad* NewPad(GstLidarScreamRx* self, guint32 ssrc, GstCaps* caps) {
   return pad;
 }
 
-/// Gives `src` its caps, and then the events that must follow them.
+/// Pushes the caps on `src`. The first time, also pushes the sticky events that must follow the
+/// caps.
 void StartSrc(GstLidarScreamRx* self, const CapsPtr& caps) {
   gst_pad_push_event(self->src, gst_event_new_caps(caps.get()));
   if (!self->state->src_started)
@@ -101,7 +106,7 @@ void StartSrc(GstLidarScreamRx* self, const CapsPtr& caps) {
   self->state->src_started = true;
 }
 
-/// Returns true if `pad` leads to an element. An unlinked ghost pad does not.
+/// Returns true if `pad` is linked to an element, directly or through ghost pads.
 bool LeadsToSomebody(GstPad* pad) {
   const PadPtr peer(gst_pad_get_peer(pad));
   if (!peer || !GST_IS_PROXY_PAD(peer.get())) return peer != nullptr;
@@ -110,8 +115,9 @@ bool LeadsToSomebody(GstPad* pad) {
   return ghost != nullptr && LeadsToSomebody(GST_PAD(ghost));
 }
 
-/// Returns the packet's pad. `src` takes the first stream that its peer accepts; payload types that
-/// pt-map lacks (retransmission, FEC) go to `src`, too.
+/// Returns the pad for a new stream. `src` gets the first stream whose caps its peer accepts, and
+/// each other stream gets a new pad. Streams whose payload type is not in pt-map (retransmission,
+/// FEC) go to `src`, too.
 GstPad* Route(GstLidarScreamRx* self, const RtpHeader& header, const CapsPtr& caps) {
   RxState& state = *self->state;
   if (!caps) {
@@ -171,7 +177,7 @@ bool HasPtMap(GstLidarScreamRx* self) {
   return self->state->settings.pt_map != nullptr;
 }
 
-/// Drops a packet whose SSRC gets no pad, because there are kMaxRoutes.
+/// Drops a packet of a new SSRC that gets no pad, because there are already kMaxRoutes pads.
 static GstFlowReturn Refuse(GstLidarScreamRx* self, GstBuffer* buffer) {
   RxState& state = *self->state;
   gst_buffer_unref(buffer);
@@ -184,8 +190,7 @@ static GstFlowReturn Refuse(GstLidarScreamRx* self, GstBuffer* buffer) {
   return GST_FLOW_OK;
 }
 
-/// Warns once of a stream that no pad takes. Its packets are dropped, as GStreamer does for
-/// unlinked pads.
+/// Warns, once, that the packets of a stream are dropped because its pad is not linked.
 static void WarnOfUntaken(GstLidarScreamRx* self, const RtpHeader& header, GstPad* pad) {
   if (std::exchange(self->state->warned_of_untaken, true)) return;
   GST_ELEMENT_WARNING(self, STREAM, DEMUX,
@@ -196,8 +201,9 @@ static void WarnOfUntaken(GstLidarScreamRx* self, const RtpHeader& header, GstPa
                        GST_PAD_NAME(pad)));
 }
 
-/// Returns the oldest ended route that suits the stream, or the end of the routes. A restarted
-/// sender begins its streams in the same order.
+/// Returns the route of an ended stream that has `payload_type` and whose pad accepts `caps`, or
+/// the end of the routes. If there are several, returns the oldest, because a restarted sender
+/// begins its streams in the same order as before.
 static auto FindEnded(RxState& state, guint payload_type, GstCaps* caps) {
   auto first = state.routes.end();
   for (auto at = state.routes.begin(); at != state.routes.end(); ++at) {
@@ -210,9 +216,10 @@ static auto FindEnded(RxState& state, guint payload_type, GstCaps* caps) {
   return first;
 }
 
-/// Returns the pad of a new SSRC. A restarted sender gets the pad of its earlier SSRC, because an
-/// application links a pad once. The pad gets no STREAM_START, because sinks would then wait for
-/// one on each other pad. A flush that is in progress applies to the pad, too.
+/// Returns the pad for a new SSRC. If the sender has restarted, the new SSRC gets the pad of an
+/// ended stream, because an application links each pad only once. Such a pad gets no second
+/// STREAM_START: a sink would then wait until every other pad has sent a STREAM_START, too. If the
+/// sink pad is flushing, the returned pad begins a flush, too.
 static GstPad* AddRoute(GstLidarScreamRx* self, const RtpHeader& header, GstBuffer** buffer) {
   RxState& state = *self->state;
   const CapsPtr caps(CapsOf(self, header));
@@ -258,7 +265,7 @@ gboolean ForwardToAll(GstLidarScreamRx* self, GstEvent* event) {
   for (const PadPtr& pad : pads) gst_pad_push_event(pad.get(), gst_event_ref(event));
   if (HasPtMap(self) && GST_EVENT_IS_STICKY(event) && GST_EVENT_TYPE(event) != GST_EVENT_EOS &&
       !self->state->src_started) {
-    gst_event_unref(event);  // the segment follows the caps, which the first packet brings
+    gst_event_unref(event);  // src gets its caps with the first packet, and then the sticky events
     return TRUE;
   }
   return gst_pad_push_event(self->src, event);

@@ -40,8 +40,8 @@ void Wait(RxState& state, RxLock& lock, Time now) {
   gst_clock_id_unref(id);
 }
 
-/// Returns a buffer with the RTCP in `bytes`. `to`, which may be NULL, is its destination for an
-/// ecnudpsink with `reply`.
+/// Returns a buffer with the RTCP in `bytes`. If `to` is not NULL, attaches `to` as the address to
+/// which an ecnudpsink with `reply` sends the buffer.
 GstBuffer* ToBuffer(GSocketAddress* to, const std::vector<std::uint8_t>& bytes) {
   GstBuffer* buffer = gst_buffer_new_allocate(nullptr, bytes.size(), nullptr);
   gst_buffer_fill(buffer, 0, bytes.data(), bytes.size());
@@ -90,7 +90,8 @@ void Run(gpointer data) {
   const bool first = !std::exchange(state.rtcp_started, true);
   lock.unlock();
   if (first) StartStream(self);
-  // A refused report is lost, and the task goes on: the pad may get another sink.
+  // If the pad refuses a report, the report is lost. The task still continues, because the pad may
+  // be linked to another sink.
   gst_pad_push(self->rtcp_src, buffer);
 }
 
@@ -109,8 +110,9 @@ gboolean RxSrcEvent(GstPad* pad, GstObject* parent, GstEvent* event) {
   const EventPtr owner(event);
   RxState& state = *GST_LIDAR_SCREAM_RX(parent)->state;
   const RxLock lock(state.mutex);
-  // Requests key units of all SSRCs, because only the streaming thread may read which SSRC the pad
-  // has. Each link carries the request, because a link in a gap would lose it.
+  // Requests key units of all SSRCs, because only the streaming thread may look up the SSRC of the
+  // pad. Sends the request over each link, because a link that has an outage would lose the
+  // request.
   for (const auto& [ssrc, last] : state.ssrcs)
     for (std::size_t i = 0; i < std::max<std::size_t>(state.latch.links(), 1); ++i)
       state.key_requests.emplace(ssrc, i);

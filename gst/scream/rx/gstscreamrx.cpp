@@ -37,7 +37,7 @@ GType NumReportsType() {
   return type;
 }
 
-/// Values shown in `stats`.
+/// The values that the property stats shows.
 struct Shown {
   rtcp::FeedbackGenerator::Stats feedback;
   RxCounters own;
@@ -47,7 +47,7 @@ constexpr auto F = At<&Shown::feedback, field>;
 template <auto field>
 constexpr auto O = At<&Shown::own, field>;
 
-/// Adds the numbers of packets of each link of the peer.
+/// Adds the packet counters of each link of the peer to `stats`.
 static void AddLinkStats(const LinkReports& reports, GstStructure* stats) {
   using S = LinkReports::LinkStats;
   using G = rtcp::FeedbackGenerator::Stats;
@@ -149,12 +149,12 @@ static gboolean SinkEvent(GstPad*, GstObject* parent, GstEvent* event) {
   RxState& state = *self->state;
   switch (GST_EVENT_TYPE(event)) {
     case GST_EVENT_EOS:
-      if (state.eos) {  // the goodbyes have already ended the stream
+      if (state.eos) {  // RTCP BYEs have already ended the stream
         gst_event_unref(event);
         return TRUE;
       }
       break;
-    case GST_EVENT_STREAM_START:  // the other pads have their own events
+    case GST_EVENT_STREAM_START:  // the other pads have their own STREAM_START
       return gst_pad_push_event(self->src, event);
     case GST_EVENT_FLUSH_STOP:
       state.eos = false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The input of screamrx: counts media and passes them on, and handles goodbyes.
+// The input of screamrx: counts media packets and passes them on, and handles RTCP BYEs.
 #include <algorithm>
 
 #include "gst/common/buffer_map.h"
@@ -13,20 +13,23 @@ namespace lidar::gst {
 namespace {
 
 constexpr std::size_t kMaxSsrcs = 64;
-// A stream without packets for this time does not delay the end of the others.
+// A stream that has sent no packet for this time does not prevent EOS after the other streams have
+// ended.
 constexpr Duration kSsrcTimeout = std::chrono::seconds(5);
-// An older kernel time, or a future one, shows that the system clock was set.
+// A kernel arrival time that is older than this, or in the future, is not used, because the system
+// clock has been set meanwhile.
 constexpr Duration kMaxAge = std::chrono::seconds(1);
 constexpr Duration kMaxApart = std::chrono::milliseconds(1);
 
-/// The present time on the reports' clock, and on the clock of kernel arrival times.
+/// The current time on two clocks: the clock of the reports, and the clock of the kernel's arrival
+/// times.
 struct Clocks {
   Time now{};
   GstClockTime unix_now = 0;
 };
 
-/// Reads both clocks. Reads them again if the thread was stopped in between, because all arrivals
-/// would then seem earlier.
+/// Reads both clocks. If the thread was interrupted between the two reads, reads both again,
+/// because the kernel's arrival times would otherwise be converted to earlier times.
 Clocks ReadClocks(const RxState& state) {
   Clocks clocks;
   for (int tries = 0; tries < 3; ++tries) {
@@ -37,7 +40,7 @@ Clocks ReadClocks(const RxState& state) {
   return clocks;
 }
 
-/// Converts the kernel's arrival time to the monotonic clock of the reports.
+/// Converts an arrival time of the kernel to the monotonic clock of the reports.
 Time ArrivalTime(const Clocks& clocks, GstClockTime arrival) {
   if (!GST_CLOCK_TIME_IS_VALID(arrival)) return clocks.now;
   const auto age = Duration{static_cast<std::int64_t>(clocks.unix_now - arrival)};
@@ -61,8 +64,8 @@ PeerLatch::Verdict Judge(RxState& state, Time now, GstBuffer* buffer, const RtpH
   return state.latch.OnPacket(now, packet);
 }
 
-/// Returns true if the capture time of a slice that begins here is more than max-age away, or
-/// nothing if no slice begins.
+/// Returns true if a slice begins in `payload` and its capture time is more than max-age away from
+/// `unix_now`, in either direction. Returns nothing if no slice begins in `payload`.
 std::optional<bool> BeginsOld(const RxState& state, GstClockTime unix_now, ByteView payload) {
   std::optional<bool> old;
   for (const rtp::Unit& unit : rtp::ParsePayload(payload)) {
@@ -75,14 +78,15 @@ std::optional<bool> BeginsOld(const RxState& state, GstClockTime unix_now, ByteV
   return old;
 }
 
-/// Returns true if the packet is from a recording that is sent again. Only the first packet of a
-/// slice has its capture time; the following packets are treated like it.
+/// Returns true if the packet belongs to a recording that is sent again. Only the first packet of a
+/// slice has a capture time. The packets that follow it are treated like the first packet.
 bool IsOld(RxState& state, GstClockTime unix_now, GstBuffer* buffer, const RtpHeader& header) {
   if (state.settings.max_age == Duration{0} || !state.lidar_types[header.payload_type])
     return false;
   const BufferMap map(buffer, GST_MAP_READ);
   const auto begins_old = BeginsOld(state, unix_now, PayloadOf(map, header));
-  // The address counts too: a recording under the peer's SSRC must not silence the peer.
+  // An old stream is identified by its address and SSRC. If only the SSRC counted, a recording with
+  // the peer's SSRC would block the peer's packets, too.
   const std::pair stream(AddressToString(SourceOf(buffer)), header.ssrc);
   if (!begins_old) return state.old_streams.count(stream) > 0;
   if (!*begins_old) state.old_streams.erase(stream);
@@ -90,7 +94,7 @@ bool IsOld(RxState& state, GstClockTime unix_now, GstBuffer* buffer, const RtpHe
   return *begins_old;
 }
 
-/// Counts a media packet. Returns false if it is to be dropped. The caller holds the lock.
+/// Counts a media packet. Returns false if the packet must be dropped. The caller holds the lock.
 bool Account(GstLidarScreamRx* self, const Clocks& clocks, GstBuffer* buffer,
              const RtpHeader& header) {
   RxState& state = *self->state;
@@ -123,7 +127,7 @@ bool Account(GstLidarScreamRx* self, const Clocks& clocks, GstBuffer* buffer,
   if (state.seen.ShowsRestart(header.ssrc, header.seq, header.timestamp))
     state.reports.Forget(header.ssrc);
   state.reports.OnPacket(SourceOf(buffer), ArrivalTime(clocks, arrival), packet);
-  // The next packet of an erased stream adds it again.
+  // If the erased stream is not at its end, its next packet adds it again.
   if (state.ssrcs.size() >= kMaxSsrcs) state.ssrcs.erase(state.ssrcs.begin());
   state.ssrcs[header.ssrc] = clocks.now;
   const bool is_new = state.seen.Add(header.ssrc, header.seq, header.timestamp);
@@ -135,16 +139,16 @@ bool Account(GstLidarScreamRx* self, const Clocks& clocks, GstBuffer* buffer,
 
 enum class Fate { kPass, kDrop, kEnd };
 
-/// Returns true if a stream continues. Silent streams do not count, because a restarted sender
-/// sends no goodbye for its earlier SSRC.
+/// Returns true if a stream has not ended. A silent stream counts as ended, because a restarted
+/// sender sends no BYE for the SSRC that it had before.
 bool AnyAlive(const RxState& state, Time now) {
   return std::any_of(state.ssrcs.begin(), state.ssrcs.end(),
                      [now](const auto& s) { return now - s.second < kSsrcTimeout; });
 }
 
-/// Handles RTCP on the media's port: a goodbye ends streams, `stats` keeps a sender's report, and
-/// other RTCP passes unread. With a pt-map other RTCP is dropped, because no stream's pad is for
-/// it. The caller holds the lock.
+/// Handles RTCP that arrives on the port of the media. A BYE ends its streams. A sender report is
+/// stored for the property stats. Other RTCP is passed on unread or, if there is a pt-map, dropped,
+/// because no pad is meant for it. The caller holds the lock.
 Fate LookAtRtcp(RxState& state, Time now, GstBuffer* buffer, const BufferMap& map) {
   const auto goodbyes = ParseBye(map.view());
   if (goodbyes.empty() && !rtcp::HasSenderReport(map.view()))

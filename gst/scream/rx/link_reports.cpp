@@ -36,7 +36,8 @@ void LinkReports::set_config(const rtcp::FeedbackConfig& config) {
 LinkReports::Link& LinkReports::LinkOf(GSocketAddress* from) {
   for (Link& link : links_) {
     if (from != nullptr && link.address && !SameAddress(from, link.address.get())) continue;
-    // Keeps the address object: SameAddress() is fast if the next packet has the same object.
+    // Keeps the packet's address object, because SameAddress() is fast if the next packet has the
+    // same object.
     if (from != nullptr && from != link.address.get())
       link.address.reset(G_SOCKET_ADDRESS(g_object_ref(from)));
     return link;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Feedback for each link of the peer, and detection of packets that came by several links.
+// Feedback for each link of the peer, and detection of packets that arrive over several links.
 #pragma once
 #include <gio/gio.h>
 
@@ -16,10 +16,12 @@
 
 namespace lidar::gst {
 
-/// Reports of a link cover the packets that came by it. The first link may have no address.
+/// Generates separate reports for each link of the peer. The reports of a link cover the packets
+/// that arrived over this link. The first link may have no address.
 class LinkReports {
  public:
-  /// A new link replaces the link that has been silent for longest.
+  /// The greatest number of links. A further link replaces the link that has been silent for
+  /// longest.
   static constexpr std::size_t kMaxLinks = 4;
 
   struct Report {
@@ -27,11 +29,11 @@ class LinkReports {
     GSocketAddress* to;  // not owned; NULL if unknown
   };
 
-  /// Forgets everything.
+  /// Removes all links and their counters, and sets the configuration.
   void Reset(const rtcp::FeedbackConfig& config);
   void set_config(const rtcp::FeedbackConfig& config);
   void OnPacket(GSocketAddress* from, Time arrival, const rtcp::ReceivedPacket& packet);
-  /// Forgets the packets of an SSRC whose sender has restarted.
+  /// Call it when the sender of `ssrc` has restarted. Removes the record of the SSRC's packets.
   void Forget(std::uint32_t ssrc);
   Time NextDue() const;
   std::optional<Report> Take(Time now);
@@ -41,7 +43,7 @@ class LinkReports {
     rtcp::FeedbackGenerator::Stats feedback;
   };
   std::vector<LinkStats> stats() const;
-  /// Sums over all links, including replaced ones.
+  /// Returns the sums over all links, including replaced ones.
   rtcp::FeedbackGenerator::Stats Sum() const;
 
  private:
@@ -57,16 +59,18 @@ class LinkReports {
   rtcp::FeedbackGenerator::Stats replaced_;  // sum over replaced links
 };
 
-/// Packets that have arrived by any link. A packet that is too old to be found counts as new.
+/// The packets that have arrived over any link. A packet that is kWindow or more numbers behind the
+/// newest one counts as new.
 class SeenPackets {
  public:
   static constexpr int kWindow = 4096;
   static constexpr std::size_t kMaxSources = 64;
 
-  /// Returns true if the number arrived before with another RTP timestamp: the sender has
-  /// restarted.
+  /// Returns true if the sender has restarted: `seq` has arrived before, but with another RTP
+  /// timestamp.
   bool ShowsRestart(std::uint32_t ssrc, std::uint16_t seq, std::uint32_t timestamp) const;
-  /// Returns false for a repeated packet. After a restart, earlier packets are forgotten.
+  /// Adds a packet. Returns false if the packet has arrived before. After a restart, the earlier
+  /// packets are forgotten.
   bool Add(std::uint32_t ssrc, std::uint16_t seq, std::uint32_t timestamp);
 
  private:

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The inside of screamrx: its state, and the functions that its files share.
+// The internal state of screamrx, and the functions that its files share.
 //
-// Threads: the sink pad's streaming thread examines and passes packets; the task on rtcp_src sends
-// reports when they are due. One mutex guards the state; no thread holds it while pushing or
-// waiting.
+// Threads: the sink pad's streaming thread examines packets and passes them on. The task on
+// rtcp_src sends reports when they are due. One mutex guards the state. No thread holds the mutex
+// while it pushes or waits.
 #pragma once
 #include <gst/base/gstflowcombiner.h>
 #include <gst/gst.h>
@@ -33,7 +33,7 @@ enum NumReportsMode { kNumReportsCount, kNumReportsEricsson };
 GType NumReportsType();
 
 struct RxSettings {
-  rtcp::FeedbackConfig feedback;  // without the settings below
+  rtcp::FeedbackConfig feedback;  // without the values of the fields below
   guint packets_per_feedback = static_cast<guint>(rtcp::FeedbackConfig{}.packets_per_feedback);
   guint ssrc = 0;
   gint num_reports = kNumReportsCount;
@@ -59,8 +59,8 @@ struct RxCounters {
 struct RxRoute {
   GstPad* pad = nullptr;
   guint payload_type = 0;
-  guint64 number = 0;  // grows with each route
-  bool ended = false;  // by a goodbye, or by a move of the peer
+  guint64 number = 0;  // higher for each new route
+  bool ended = false;  // by an RTCP BYE, or because another peer was accepted
 };
 
 struct RxState {
@@ -70,7 +70,7 @@ struct RxState {
   PeerLatch latch;
   SeenPackets seen;
   std::bitset<128> lidar_types;                           // payload types of LiDAR
-  std::set<std::pair<std::string, guint32>> old_streams;  // by address; older than max-age
+  std::set<std::pair<std::string, guint32>> old_streams;  // address and SSRC; older than max-age
   std::map<guint32, Time> ssrcs;  // of the peer, with the time of the last packet
   bool running = false;
   RxCounters counters;
@@ -83,11 +83,12 @@ struct RxState {
   GstClockID timer = nullptr;  // not owned
   Time waits_until{};
   bool rtcp_started = false;
-  // SSRCs that need a key unit, with the links that still have to send the request.
+  // Requests for key units that still have to be sent: the SSRC, and the index of the link that
+  // sends the request.
   std::set<std::pair<guint32, std::size_t>> key_requests;
 
-  // Pads by SSRC, if there is a pt-map. Only the streaming thread changes `routes`; a flush reads
-  // them.
+  // The pads by SSRC, if there is a pt-map. Only the streaming thread changes `routes`, but a flush
+  // reads `routes` in another thread.
   std::map<guint32, RxRoute> routes;
   guint64 routes_begun = 0;
 
@@ -130,15 +131,16 @@ void WakeFeedback(RxState& state);
 
 // demux.cpp: streams by SSRC, with pt-map
 bool HasPtMap(GstLidarScreamRx* self);
-/// Warns of fields of pt-map that cannot work.
+/// Posts a warning about each field of pt-map that is invalid.
 void CheckPtMap(GstLidarScreamRx* self);
-/// Notes which payload types of pt-map are LiDAR. The caller holds the lock.
+/// Stores which payload types of pt-map are LiDAR. The caller holds the lock.
 void NoteLidarTypes(RxState& state);
-/// Notes the payload type of the caps, if there is no pt-map.
+/// Stores the payload type in `caps` if it is LiDAR. Call it only if there is no pt-map.
 void NoteCaps(RxState& state, const GstCaps* caps);
-/// Pushes on the pad of the packet's stream, which may be new. Takes the buffer.
+/// Pushes the packet on the pad of its stream. Adds the pad if the stream is new. Takes ownership
+/// of the buffer.
 GstFlowReturn Demux(GstLidarScreamRx* self, const RtpHeader& header, GstBuffer* buffer);
-/// Sends a sink event to each media pad. Takes the event.
+/// Sends an event of the sink pad to each media pad. Takes ownership of the event.
 gboolean ForwardToAll(GstLidarScreamRx* self, GstEvent* event);
 void RemoveRoutes(GstLidarScreamRx* self);
 

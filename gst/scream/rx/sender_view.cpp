@@ -8,7 +8,8 @@
 namespace lidar::gst {
 namespace {
 
-// Silence after which reports of another clock are accepted.
+// A report that is not newer than the last one is accepted if no report has arrived for this time,
+// because the sender may have another clock.
 constexpr Duration kClockKept = std::chrono::seconds(10);
 
 struct Shown {

@@ -11,7 +11,7 @@ namespace lidar::gst {
 
 class SenderView {
  public:
-  /// Takes reports that are newer than the last one.
+  /// Stores the report if it is newer than the last one.
   void OnReport(Time now, const rtcp::SenderReport& report);
   /// Adds the fields sender-... to `stats`; all are 0 before the first report.
   void AddStats(Time now, GstStructure* stats) const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Copies of accepted datagrams that came by the sender's other links.
+// Copies of accepted datagrams that arrive over other links of the sender.
 #pragma once
 #include <gst/gst.h>
 
@@ -13,21 +13,22 @@
 
 namespace lidar::gst {
 
-/// A sender protects a packet once and sends the same bytes over its links. SRTP refuses copies as
-/// replays, but the receiver needs each copy to judge the links. So bytes that were accepted pass
-/// again, once for each address.
+/// A sender protects a packet once and sends the same bytes over all its links. srtpdec refuses the
+/// copies as replays, but the receiver needs each copy to judge the links. This class therefore
+/// recognises the bytes of an accepted datagram, and accepts them once from each other address.
 class SrtpCopies {
  public:
   static constexpr std::size_t kMaxDatagrams = 1'024;
   static constexpr std::size_t kMaxBytes = 2 << 20;
   static constexpr std::size_t kMaxAddresses = 4;  // for one datagram
 
-  /// Notes an RTP datagram. Keeps nothing until a second address sends.
+  /// Call it for each RTP datagram. Until a second address sends, no copies are expected, and
+  /// OnPassed() stores nothing.
   void OnArrival(GstBuffer* datagram);
-  /// `datagram` was accepted, and decoded to `decoded`.
+  /// Call it after `datagram` was accepted. `decoded` is the decoded packet.
   void OnPassed(GstBuffer* datagram, GstBuffer* decoded);
-  /// Returns the decoded packet of a refused copy, with the copy's address, marks and times; NULL
-  /// if `datagram` is no copy.
+  /// Returns the decoded packet if `datagram` is a copy from another address, else NULL. The packet
+  /// has the address, ECN marks and times of the copy.
   BufferPtr Take(GstBuffer* datagram);
   void Clear();
 

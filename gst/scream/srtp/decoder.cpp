@@ -5,8 +5,8 @@ namespace lidar::gst {
 
 namespace {
 
-// The window is large, because the links of a sender alternate, and packets come late after a gap
-// on their link.
+// The replay window is large, because a sender alternates between its links, and packets are late
+// after an outage of their link.
 constexpr guint kReplayWindow = 4'096;  // packets
 
 }  // namespace
@@ -45,7 +45,7 @@ SrtpDecoder::~SrtpDecoder() {
 
 BufferPtr SrtpDecoder::Decode(GstBuffer* datagram) {
   BeginStream(sink_.get(), "application/x-srtp");
-  // srtpdec gets a copy: it uses a shared buffer after it has released its reference.
+  // srtpdec gets a copy, because it uses a shared buffer after it has released its reference.
   gst_pad_chain(sink_.get(), gst_buffer_copy_deep(datagram));
   return std::move(out_);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The stock srtpdec with one key: decodes a datagram, or refuses it if the key does not fit.
+// The stock srtpdec with one key: decodes a datagram, or refuses it if it was protected with
+// another key.
 #pragma once
 #include <gst/gst.h>
 
@@ -13,12 +14,12 @@
 
 namespace lidar::gst {
 
-/// The bin contains srtpdec but never changes its state, because srtpdec warns of a state change
-/// while it decodes. Any thread may create an SrtpDecoder; only the streaming thread that gives it
-/// datagrams may use it.
+/// Decodes with an srtpdec that is a child of the bin. The bin does not change the state of
+/// srtpdec, because srtpdec warns if its state changes while it decodes. Any thread may create an
+/// SrtpDecoder, but only the streaming thread that brings the datagrams may use it.
 class SrtpDecoder {
  public:
-  /// Null if the srtp plugin is missing.
+  /// Returns null if the srtp plugin is missing.
   static std::unique_ptr<SrtpDecoder> Create(GstElement* bin, const SrtpPolicy& policy,
                                              SrtpKey key);
   ~SrtpDecoder();
@@ -26,13 +27,13 @@ class SrtpDecoder {
   SrtpDecoder& operator=(const SrtpDecoder&) = delete;
 
   const SrtpKey& key() const { return key_; }
-  /// Returns the decoded datagram if it is RTP or RTCP by this key and no replay, else NULL. Leaves
-  /// `datagram` unchanged.
+  /// Returns the decoded datagram if it is RTP or RTCP that was protected with this key and is not
+  /// a replay, else NULL. Does not change `datagram`.
   BufferPtr Decode(GstBuffer* datagram);
-  /// Forgets the state of `ssrc` and starts from this rollover counter.
+  /// Removes the state of `ssrc`. Its next packet is decoded with the rollover counter `rollover`.
   void Restart(std::uint32_t ssrc, std::uint32_t rollover);
-  /// Forgets all streams. Only this frees memory of srtpdec while it runs: in GStreamer 1.22 its
-  /// session keeps what Restart() removes.
+  /// Removes the state of all streams. Only Clear() frees memory of srtpdec while srtpdec runs,
+  /// because in GStreamer 1.22 the session of srtpdec keeps what Restart() removes.
   void Clear();
 
  private:
@@ -44,10 +45,10 @@ class SrtpDecoder {
   SrtpPolicy policy_;
   SrtpKey key_;
   PadPtr sink_;
-  Relay rtp_;  // take the decoded packets
+  Relay rtp_;  // receive the decoded packets
   Relay rtcp_;
-  std::map<std::uint32_t, std::uint32_t> rollovers_;  // counters above 0 that were tried
-  BufferPtr out_;                                     // of the present datagram
+  std::map<std::uint32_t, std::uint32_t> rollovers_;  // counters above 0 that Restart() has set
+  BufferPtr out_;                                     // decoded from the current datagram
 };
 
 }  // namespace lidar::gst

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Recognises the hello of a DTLS client (RFC 6347, 4.2), which may take several datagrams.
+// Recognises the ClientHello of DTLS (RFC 6347, 4.2), which may be split over several datagrams.
 #pragma once
 #include <string>
 
@@ -7,10 +7,10 @@
 
 namespace lidar::gst {
 
-/// Returns true for each part of a client's hello, unless its record was cut off.
+/// Returns true if the datagram is a part of a ClientHello and contains its whole record.
 bool IsOfHello(ByteView datagram);
-/// Returns the first part of a hello without the record header, which differs in a repeated hello.
-/// Returns an empty text for other datagrams.
+/// Returns the first part of a ClientHello, without the record header, which is different each time
+/// the client repeats its hello. Returns an empty text for any other datagram.
 std::string HelloIn(ByteView datagram);
 
 }  // namespace lidar::gst

@@ -14,11 +14,13 @@ namespace lidar::gst {
 namespace {
 
 constexpr std::chrono::milliseconds kDtlsTick{100};
-// A client gives up a handshake after this time, because DTLS doubles its pauses between
-// repetitions. A client with a key begins anew if its media stay unanswered for the same time.
+// A client ends an unanswered handshake after this time and begins another, because DTLS doubles
+// the pause before each repetition. A client that has a key begins a new handshake if its media get
+// no answer for this time.
 constexpr std::chrono::seconds kDtlsPatience{5};
-constexpr std::chrono::seconds kDtlsPause{1};  // between handshakes that fail
-// A server keeps a handshake for this time, because it may have to repeat its last datagram.
+constexpr std::chrono::seconds kDtlsPause{1};  // least time between two handshakes of a client
+// A server keeps a handshake for this time, because its last datagram may be lost and must then be
+// repeated.
 constexpr std::chrono::seconds kServerKeeps{10};
 
 }  // namespace
@@ -92,8 +94,8 @@ void DtlsKeys::Process(GstBuffer* datagram) {
     session = SessionOf(HelloIn(BufferMap(datagram, GST_MAP_READ).view()), from);
   }
   if (session == nullptr) return;
-  // The lock makes a server's last datagram wait in Send() until the key is in use, because the
-  // client's media follow that datagram.
+  // While this thread holds the lock, the last datagram of a server waits in Send(). The key is
+  // therefore in use before the client gets this datagram and sends media.
   const std::lock_guard lock(session->route->mutex);
   session->handshake->Take(datagram);
   TakeKey(session);
@@ -109,7 +111,9 @@ void DtlsKeys::TakeKey(Session* session) {
   seen_ = calls_.traffic();
 }
 
-/// Another address that brings the same hello to a server is another link of the same peer.
+/// Returns the session to which a datagram belongs, or null. A new hello begins a session. If a
+/// hello is known but comes from another address, this address is another link of the same peer and
+/// is added to the session.
 DtlsKeys::Session* DtlsKeys::SessionOf(const std::string& hello, GSocketAddress* from) {
   const Time now = MonotonicTime();
   const auto is_of = [from](const Session& session) {
@@ -144,8 +148,8 @@ DtlsKeys::Session* DtlsKeys::Begin(Time now, std::string hello) {
   return &sessions_.back();
 }
 
-/// Sends a copy of the hello before each later datagram: a server identifies a link by the hello,
-/// which may have been lost on that link.
+/// Sends a datagram. A client sends its hello again before each later datagram, because the server
+/// identifies a link by the hello, which may have been lost on that link.
 void DtlsKeys::Send(Route* route, GstBuffer* datagram) {
   const BufferMap map(datagram, GST_MAP_READ);
   const std::lock_guard lock(route->mutex);

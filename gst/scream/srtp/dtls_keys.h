@@ -25,33 +25,34 @@
 namespace lidar::gst {
 
 struct DtlsCounts {
-  std::uint64_t handshakes = 0;  // that brought a key
-  std::uint64_t refused = 0;     // with another certificate than the one to trust
-  std::uint64_t dropped = 0;     // datagrams that came while too many waited
-  std::uint64_t unkeyed = 0;  // packets of media that came before there was a key, and were dropped
+  std::uint64_t handshakes = 0;  // that resulted in a key
+  std::uint64_t refused = 0;     // because the peer's certificate was not the trusted one
+  std::uint64_t dropped = 0;     // datagrams that arrived while too many waited
+  std::uint64_t unkeyed = 0;     // media packets that were dropped, because there was no key yet
 };
 
-/// Number of packets that were protected, and number of packets that passed.
+/// The number of packets that were protected, and the number of received packets that passed.
 struct SrtpTraffic {
   std::uint64_t sent = 0;
   std::uint64_t passed = 0;
 };
 
-/// The end that sends media is the client: it sends its hello over all links, repeats it until
-/// there is a key, and begins anew if its media stay unanswered, as after a restart of the other
-/// end. The server answers each address that sent the same hello, so one live link is enough.
-/// Repeated datagrams do no harm in DTLS. Slow work runs in a thread of its own.
+/// Negotiates the SRTP keys. The end that sends media is the client. It sends its hello over all
+/// links, and repeats it until there is a key. If its media get no answer later, for example
+/// because the other end was restarted, it begins a new handshake. The server answers each address
+/// that has sent the same hello, so one working link is enough. DTLS tolerates repeated datagrams.
+/// Slow work runs in a separate thread.
 class DtlsKeys {
  public:
   static constexpr std::size_t kMaxHandshakes = 4;  // of a server at a time
-  static constexpr int kHellosPerSecond = 5;        // that begin a handshake of a server
-  static constexpr std::size_t kMaxAddresses = 4;   // of a handshake
-  static constexpr std::size_t kMaxWaiting = 64;    // datagrams of handshakes
+  static constexpr int kHellosPerSecond = 5;        // for which a server begins a handshake
+  static constexpr std::size_t kMaxAddresses = 4;   // of the peer in a handshake
+  static constexpr std::size_t kMaxWaiting = 64;    // datagrams that wait to be processed
 
   using Addresses = std::vector<SocketAddressPtr>;
   struct Calls {
-    /// Sends a datagram to the addresses. A client's datagram has no addresses, and goes over all
-    /// links.
+    /// Sends a datagram to the addresses. If this end is a client, there are no addresses, and the
+    /// datagram is sent over all links.
     std::function<void(GstBuffer*, const Addresses&)> send;
     std::function<void(const SrtpKey&)> on_key;
     std::function<SrtpTraffic()> traffic;
@@ -64,24 +65,26 @@ class DtlsKeys {
   DtlsKeys(const DtlsKeys&) = delete;
   DtlsKeys& operator=(const DtlsKeys&) = delete;
 
-  /// Shakes hands until Stop(): a client at once, a server as hellos come.
+  /// Starts the thread, which runs handshakes until Stop(). A client begins a handshake at once. A
+  /// server begins one when a hello arrives.
   void Start();
-  /// Ends the thread, and forgets open handshakes.
+  /// Ends the thread, and drops unfinished handshakes.
   void Stop();
-  /// Takes a datagram that has its source's address; any thread.
+  /// Queues a received datagram, which must have its source address attached. Any thread may call
+  /// it.
   void Take(GstBuffer* datagram);
   DtlsCounts counts() const { return {handshakes_, refused_, dropped_, 0}; }
 
  private:
-  /// Data for the threads of dtlsenc: the addresses of a server's peer, or the first part of a
-  /// client's hello.
+  /// The data that threads of dtlsenc use: the addresses of the peer if this end is a server, or
+  /// the first part of the hello if this end is a client.
   struct Route {
     std::mutex mutex;
     Addresses addresses;
     BufferPtr hello;
   };
   struct Session {
-    std::string hello;  // of a server's peer
+    std::string hello;  // the peer's hello, if this end is a server
     std::shared_ptr<Route> route;
     std::unique_ptr<DtlsHandshake> handshake;
     Time began{};
@@ -111,7 +114,8 @@ class DtlsKeys {
   // Used by the thread, and by other threads only while it does not run:
   std::deque<Session> sessions_;  // oldest first
   Allowance hellos_{kHellosPerSecond, Duration(std::chrono::seconds(1)) / kHellosPerSecond};
-  std::optional<Time> heard_at_;  // last sign of the other end; none before the first key
+  // Time of the last sign of the other end; none before the first key.
+  std::optional<Time> heard_at_;
   Time paused_until_{};
   SrtpTraffic seen_;
   bool told_of_stranger_ = false;

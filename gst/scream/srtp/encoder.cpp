@@ -9,8 +9,7 @@
 namespace lidar::gst {
 namespace {
 
-// The window is large, because links alternate, and a copy of an old packet may leave after many
-// newer packets.
+// The window is large, so that a packet can be protected after many packets with higher numbers.
 constexpr guint kWindow = 4'096;  // packets
 
 }  // namespace
@@ -50,8 +49,8 @@ void SrtpEncoder::SetKey(const SrtpKey& key) {
   const BufferPtr buffer(gst_buffer_new_memdup(key.data(), key.size()));
   const std::lock_guard lock(mutex_);
   g_object_set(element_, "key", buffer.get(), nullptr);
-  // Starts srtpenc after its first key: if that key came in PLAYING, srtpenc of GStreamer 1.22
-  // would never free its session.
+  // Starts srtpenc only after its first key is set. If the first key were set in PLAYING, srtpenc
+  // of GStreamer 1.22 would never free its session.
   if (!std::exchange(has_key_, true)) gst_element_set_state(element_, GST_STATE_PLAYING);
 }
 
@@ -60,7 +59,7 @@ BufferPtr SrtpEncoder::Protect(GstBuffer* packet) {
   const bool rtcp = IsRtcp(packet);
   GstPad* sink = (rtcp ? rtcp_ : rtp_).sink.get();
   const std::lock_guard lock(mutex_);
-  if (!has_key_) return nullptr;  // srtpenc would invent a key
+  if (!has_key_) return nullptr;  // srtpenc would generate a key itself
   BeginStream(sink, rtcp ? "application/x-rtcp" : "application/x-rtp");
   gst_pad_chain(sink, owner.release());
   return std::move(out_);

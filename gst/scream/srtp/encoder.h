@@ -12,27 +12,28 @@
 
 namespace lidar::gst {
 
-/// srtpenc is a child of the bin. Each key has one encoder, because two encoders would use a packet
-/// index twice. All threads may call it.
+/// Protects packets with an srtpenc that is a child of the bin. All streams and links share one
+/// encoder, because two encoders with the same key would use the same packet index twice. Any
+/// thread may call the methods.
 class SrtpEncoder {
  public:
-  /// Null if the srtp plugin is missing.
+  /// Returns null if the srtp plugin is missing.
   static std::unique_ptr<SrtpEncoder> Create(GstElement* bin, const SrtpPolicy& policy);
   ~SrtpEncoder();
   SrtpEncoder(const SrtpEncoder&) = delete;
   SrtpEncoder& operator=(const SrtpEncoder&) = delete;
 
   void SetKey(const SrtpKey& key);
-  /// Returns the protected RTP or RTCP packet with its metas; NULL if srtpenc refuses it, or before
-  /// a key was set. Takes the buffer.
+  /// Returns the protected RTP or RTCP packet, which has the metas of `packet`. Returns NULL if
+  /// srtpenc refuses the packet, or if no key was set. Takes ownership of `packet`.
   BufferPtr Protect(GstBuffer* packet);
 
  private:
   SrtpEncoder(GstElement* bin, GstElement* element);
-  /// A direction through the element: "rtp" or "rtcp".
+  /// The pads of srtpenc for one kind of packet, "rtp" or "rtcp".
   struct Way {
     PadPtr sink;
-    std::unique_ptr<Relay> relay;  // takes the protected packets
+    std::unique_ptr<Relay> relay;  // receives the protected packets
   };
   Way NewWay(const std::string& kind);
 
@@ -40,7 +41,7 @@ class SrtpEncoder {
   GstElement* element_;  // owned by the bin
   Way rtp_;
   Way rtcp_;
-  std::mutex mutex_;  // held while the element works; it only pushes to the relays
+  std::mutex mutex_;  // held while srtpenc works, which pushes only to the relays
   bool has_key_ = false;
   BufferPtr out_;
 };

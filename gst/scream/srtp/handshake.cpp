@@ -14,7 +14,7 @@ DtlsHandshake::DtlsHandshake(const Certificates& certificates, bool is_client, S
   decoder_ = make("dtlsdec");
   encoder_ = make("dtlsenc");
   if (!decoder_ || !encoder_) return;
-  // The id pairs the two elements in a table of the process.
+  // dtlsdec and dtlsenc find each other by this id in a table of the process.
   const StringPtr id(g_uuid_string_random());
   g_object_set(decoder_.get(), "pem", certificates.own.c_str(), nullptr);
   g_object_set(decoder_.get(), "connection-id", id.get(), nullptr);
@@ -32,7 +32,8 @@ std::unique_ptr<DtlsHandshake> DtlsHandshake::Start(const Certificates& certific
 bool DtlsHandshake::Start() {
   sink_.reset(gst_element_get_static_pad(decoder_.get(), "sink"));
   sender_.emplace(encoder_.get(), "src", [this](BufferPtr datagram) { send_(datagram.get()); });
-  // Both ends use the client's key, which the server decodes with.
+  // Both ends use the client's key, which is the encoder's key at the client and the decoder's key
+  // at the server.
   GstElement* has_key = is_client_ ? encoder_.get() : decoder_.get();
   g_signal_connect(
       has_key, "on-key-received", G_CALLBACK(+[](GstElement* element, DtlsHandshake* self) {
@@ -42,7 +43,7 @@ bool DtlsHandshake::Start() {
         self->OnKey(key);
       }),
       this);
-  // The encoder finds the connection that the decoder makes.
+  // The decoder starts first, because it creates the connection that the encoder looks up.
   for (GstElement* element : {decoder_.get(), encoder_.get()})
     if (gst_element_set_state(element, GST_STATE_PLAYING) == GST_STATE_CHANGE_FAILURE) return false;
   return true;
@@ -53,7 +54,7 @@ DtlsHandshake::~DtlsHandshake() {
     if (element != nullptr) gst_element_set_state(element, GST_STATE_NULL);
 }
 
-/// The peer's certificate came before the key.
+/// Accepts the key if the peer's certificate, which has arrived before the key, is the trusted one.
 void DtlsHandshake::OnKey(GstBuffer* key) {
   gchar* pem = nullptr;
   g_object_get(decoder_.get(), "peer-pem", &pem, nullptr);
@@ -69,7 +70,7 @@ void DtlsHandshake::OnKey(GstBuffer* key) {
 
 void DtlsHandshake::Take(GstBuffer* datagram) {
   BeginStream(sink_.get(), "application/x-dtls");
-  // The decoder works in place, so it gets a copy.
+  // The decoder changes the datagram in place, so it gets a copy.
   const GstFlowReturn flow = gst_pad_chain(sink_.get(), gst_buffer_copy_deep(datagram));
   if (flow != GST_FLOW_OK && state_ == State::kOpen) state_ = State::kFailed;
 }

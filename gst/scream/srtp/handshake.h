@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// One DTLS handshake by the stock dtlsdec and dtlsenc, which are in no bin: their errors end the
-// handshake, not the pipeline.
+// A DTLS handshake by the stock dtlsdec and dtlsenc. These elements are not in a bin, so their
+// errors end only the handshake, and not the pipeline.
 #pragma once
 #include <gst/gst.h>
 
@@ -20,20 +20,21 @@ namespace lidar::gst {
 class DtlsHandshake {
  public:
   enum class State { kOpen, kDone, kRefused, kFailed };
-  /// Sends a datagram to the peer. Threads of dtlsenc call it.
+  /// A function that sends a datagram to the peer. Threads of dtlsenc call it.
   using Send = std::function<void(GstBuffer*)>;
 
-  /// Null without the dtls plugin. A client begins at once; a server waits for the peer's hello.
+  /// Starts a handshake. A client sends its hello at once; a server waits for the peer's hello.
+  /// Returns null if the dtls plugin is missing.
   static std::unique_ptr<DtlsHandshake> Start(const Certificates& certificates, bool is_client,
                                               Send send);
   ~DtlsHandshake();
   DtlsHandshake(const DtlsHandshake&) = delete;
   DtlsHandshake& operator=(const DtlsHandshake&) = delete;
 
-  /// Takes a datagram of the peer; one thread at a time.
+  /// Processes a datagram from the peer. Only one thread at a time may call it.
   void Take(GstBuffer* datagram);
   State state() const { return state_; }
-  /// The client's SRTP key (RFC 5764); valid in kDone.
+  /// Returns the client's SRTP key (RFC 5764), which is valid in the state kDone.
   const SrtpKey& key() const { return key_; }
 
  private:
@@ -47,9 +48,9 @@ class DtlsHandshake {
   ElementPtr decoder_;
   ElementPtr encoder_;
   PadPtr sink_;                  // of the decoder
-  std::optional<Relay> sender_;  // takes what the encoder sends
+  std::optional<Relay> sender_;  // receives what the encoder sends
   std::atomic<State> state_{State::kOpen};
-  SrtpKey key_;  // written before state_
+  SrtpKey key_;  // written before `state_` becomes kDone
 };
 
 }  // namespace lidar::gst

@@ -9,12 +9,13 @@
 namespace lidar::gst {
 namespace {
 
-// The key in use and two more: the previous and the next one, or the next two.
+// The key in use and two others: the previous and the next key, or the next two keys.
 constexpr std::size_t kMaxKeys = 3;
 constexpr std::chrono::seconds kStragglers{10};
 constexpr std::size_t kMaxStreams = 2'048;
-// A stream is lost after this many failures over this time: a long loss may hide a rollover, and a
-// sender without feedback is slow.
+// A stream is lost if this many of its packets fail and none passes for this time. The rollover
+// counter may have changed during a long loss. The number is small, because a sender that gets no
+// feedback sends few packets.
 constexpr unsigned kFailuresUntilLost = 20;
 constexpr std::chrono::seconds kSilenceUntilLost{2};
 constexpr std::uint32_t kMaxRollover = 100'000;  // reached after months
@@ -23,7 +24,7 @@ constexpr unsigned kFailuresUntilWarning = 20;
 constexpr int kMaxTrials = 500;
 constexpr std::chrono::seconds kTrialsPeriod{1};
 constexpr unsigned kTriedUntilCleared = 64;
-constexpr unsigned kMaxGuesses = 32;  // for one packet: about 2 ms per key
+constexpr unsigned kMaxGuesses = 32;  // guesses for one packet, which take about 2 ms for each key
 
 SrtpInput* InputOf(GstPad* pad) {
   return static_cast<SrtpInput*>(gst_pad_get_element_private(pad));
@@ -43,7 +44,7 @@ SrtpInput::SrtpInput(GstElement* bin, const SrtpPolicy& policy, OnNewKey on_new_
   for (GstPad* pad : {entry_.get(), exit_.get()}) gst_pad_set_active(pad, TRUE);
 }
 
-/// Makes a pad that passes events and queries to the other side.
+/// Creates a pad that passes events and queries to the pad on the other side.
 PadPtr SrtpInput::NewPad(const char* name, GstPadDirection direction) {
   PadPtr pad(GST_PAD(gst_object_ref_sink(gst_pad_new(name, direction))));
   gst_pad_set_element_private(pad.get(), this);
@@ -135,15 +136,16 @@ BufferPtr SrtpInput::Decode(GstBuffer* datagram, const Head& head) {
     if (BufferPtr decoded = DecodeKnown(datagram, head)) return decoded;
     ++found->second.failures;
   }
-  // An RTCP stream is never lost, because each of its packets carries its index: a packet that
-  // fails is a recording.
+  // An RTCP stream is never lost, because each RTCP packet carries its index. A packet that fails
+  // is therefore a replay.
   if (!known || (!head.rtcp && IsLost(found->second))) return TryStranger(datagram, head);
   return nullptr;
 }
 
 BufferPtr SrtpInput::DecodeKnown(GstBuffer* datagram, const Head& head) {
   for (std::size_t i = 0; i < keys_.size(); ++i) {
-    // Tries the key of the last packet first, because the others fail once for each packet.
+    // Tries the key of the last packet first, because each packet would otherwise fail with another
+    // key first.
     const std::size_t n = (in_use_ + i) % keys_.size();
     BufferPtr decoded = keys_[n].DecoderOf(head).Decode(datagram);
     if (!decoded) continue;
@@ -153,14 +155,15 @@ BufferPtr SrtpInput::DecodeKnown(GstBuffer* datagram, const Head& head) {
   return nullptr;
 }
 
-/// Tries rollover counters for a packet of an unknown or lost stream. RTP does not carry the
-/// counter. While trials are left, many values are tried for one packet, because a sender without
-/// feedback sends few packets. Half of the trials are kept for the first values of other packets.
+/// Tries to decode a packet of an unknown or lost stream. RTP does not carry the rollover counter,
+/// so its value must be guessed. While enough trials are left, many values are tried for one
+/// packet, because a sender that gets no feedback sends few packets. Half of the trials are
+/// reserved for the first values of other packets.
 BufferPtr SrtpInput::TryStranger(GstBuffer* datagram, const Head& head) {
   const Time now = MonotonicTime();
   if (!trials_.Take(now)) return nullptr;
   BufferPtr decoded = TryRollover(datagram, head, 0);
-  // RTCP carries its index.
+  // RTCP carries its index, so that there is nothing to guess.
   const unsigned guesses = head.rtcp ? 0 : kMaxGuesses;
   for (unsigned n = 0; !decoded && n < guesses && (n == 0 || trials_.Take(now, kMaxTrials / 2));
        ++n)
@@ -170,8 +173,9 @@ BufferPtr SrtpInput::TryStranger(GstBuffer* datagram, const Head& head) {
   return decoded;
 }
 
-/// The rollover counter of a lost stream is above its old value: packets with a lower counter are
-/// recordings.
+/// Tries one rollover counter with each key. The counter of a lost stream has grown, so a packet
+/// with the old counter or a lower one is a replay. `ahead` is added to the lowest counter that is
+/// possible.
 BufferPtr SrtpInput::TryRollover(GstBuffer* datagram, const Head& head, std::uint32_t ahead) {
   const Stream& stream = StreamOf(head.stream());
   for (std::size_t i = 0; i < keys_.size(); ++i) {
@@ -180,7 +184,8 @@ BufferPtr SrtpInput::TryRollover(GstBuffer* datagram, const Head& head, std::uin
     if (stream.known && keys_[n].serial < stream.key) continue;
     const std::uint32_t rollover = (behind ? stream.rollover + 1 : 0) + ahead;
     if (!Fits(keys_[n], datagram, head.ssrc, rollover)) continue;
-    // The key's decoder takes the packet too, so that it refuses a replay.
+    // The trial was successful. The key's own decoder now decodes the packet, too, so that it
+    // refuses a replay of the packet later.
     SrtpDecoder& decoder = keys_[n].DecoderOf(head);
     decoder.Restart(head.ssrc, rollover);
     BufferPtr decoded = decoder.Decode(datagram);
@@ -203,7 +208,7 @@ bool SrtpInput::Fits(const Key& key, GstBuffer* datagram, std::uint32_t ssrc,
 void SrtpInput::UpdateKeys() {
   {
     std::lock_guard lock(mutex_);
-    // A stream whose key was missing may have any rollover counter under the new key.
+    // The search starts again, because under the new key a stream may have any rollover counter.
     if (!added_.empty())
       for (auto& [id, stream] : streams_) stream.search = {};
     for (Key& key : added_) keys_.push_back(std::move(key));
@@ -228,14 +233,16 @@ SrtpInput::Stream& SrtpInput::StreamOf(const StreamId& id) {
     for (auto it = streams_.begin(); it != streams_.end();)
       it = it->second.known || it->second.failures > failures ? std::next(it) : streams_.erase(it);
   };
-  // Garbage must neither fill the memory with invented streams nor replace a real one.
+  // Forged packets can name any number of streams. These streams must neither fill the memory nor
+  // replace a stream from which packets have passed.
   if (streams_.size() >= kMaxStreams) forget(1);
   if (streams_.size() >= kMaxStreams) forget(UINT_MAX);
   if (streams_.size() >= kMaxStreams) streams_.clear();
   return streams_[id];
 }
 
-/// `rollover` is the counter that fitted in a trial, else 0.
+/// Updates the stream of a decoded packet. `rollover` is the counter that a trial has found, else
+/// 0.
 void SrtpInput::OnPassed(const Head& head, std::size_t key, std::uint32_t rollover) {
   in_use_ = key;
   Stream& stream = StreamOf(head.stream());
@@ -261,8 +268,8 @@ void SrtpInput::OnPassed(const Head& head, std::size_t key, std::uint32_t rollov
   on_new_key_(keys_[key].media->key());
 }
 
-/// Returns true if no packet has passed for so long that the counter may have rolled over. While
-/// its packets pass, a forger cannot make a stream lost.
+/// Returns true if no packet of the stream has passed for so long that the rollover counter may
+/// have changed. A forger cannot make a stream lost while the stream's own packets pass.
 bool SrtpInput::IsLost(const Stream& stream) {
   return stream.failures >= kFailuresUntilLost &&
          MonotonicTime() - stream.passed_at >= kSilenceUntilLost;

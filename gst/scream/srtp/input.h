@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The input from a socket: tries the valid keys on each datagram.
+// The input from a socket: decodes each datagram with one of the valid keys.
 #pragma once
 #include <gst/gst.h>
 
@@ -25,34 +25,38 @@ namespace lidar::gst {
 struct SrtpCounts {
   std::uint64_t received = 0;  // datagrams that passed or were refused
   std::uint64_t refused = 0;   // wrong key, replayed, damaged or not protected
-  std::uint64_t copies = 0;    // came by another link of the sender
+  std::uint64_t copies = 0;    // arrived over another link of the sender
   std::uint64_t key_changes = 0;
 };
 
-/// Replaces the link between `socket` and `target`: events and queries pass, and datagrams pass
-/// decoded or not at all. After a packet fits a new key, the old key stays valid for a while. An
-/// unknown stream is first tried in another decoder, at a bounded rate, so that a flood of unknown
-/// streams costs neither time nor memory. The RTCP of an SSRC is a stream of its own, because its
-/// index says nothing about the media's rollover counter.
+/// Is inserted between the pads `socket` and `target`. Events and queries pass. A datagram that can
+/// be decoded passes; any other datagram is dropped. After the first packet that was protected with
+/// a new key, the old key stays valid for a while. Packets of unknown streams are tried in a
+/// separate decoder at a limited rate, so that a flood of unknown streams costs little time and
+/// memory. The RTCP of an SSRC is a separate stream, because the index in RTCP says nothing about
+/// the rollover counter of the media.
 class SrtpInput {
  public:
   using OnNewKey = std::function<void(const SrtpKey&)>;
   using OnDtls = std::function<void(GstBuffer*)>;
 
-  /// The streaming thread calls `on_new_key` once the other end uses a newer key.
+  /// The streaming thread calls `on_new_key` when the other end begins to use a newer key.
   SrtpInput(GstElement* bin, const SrtpPolicy& policy, OnNewKey on_new_key);
   ~SrtpInput();
   SrtpInput(const SrtpInput&) = delete;
   SrtpInput& operator=(const SrtpInput&) = delete;
 
-  /// Links two pads that have no link. Returns false if they do not fit.
+  /// Links `socket` and `target` through this input. The pads must not be linked yet. Returns false
+  /// if they cannot be linked.
   bool Link(GstPad* socket, GstPad* target);
-  /// Gives DTLS datagrams to `on_dtls`; without it they are refused. Call it before Link().
+  /// Gives DTLS datagrams to `on_dtls`. Without this function, DTLS datagrams are refused. Call
+  /// SetDtls() before Link().
   void SetDtls(OnDtls on_dtls) { on_dtls_ = std::move(on_dtls); }
-  /// All threads may call it. Returns false without the srtp plugin. The key of the packets that
-  /// pass stays. Of more than two newer keys, the oldest is dropped.
+  /// Adds a key. Any thread may call it. Returns false if the srtp plugin is missing. The key in
+  /// use is kept. If more than two keys are newer, the oldest of the newer keys is dropped.
   bool AddKey(const SrtpKey& key);
-  /// Keys newer than the present one that fitted no packet yet.
+  /// Returns the number of keys that are newer than the key in use and have not decoded a packet
+  /// yet.
   std::size_t waiting_keys() const { return waiting_; }
   SrtpCounts counts() const;
 
@@ -65,9 +69,10 @@ class SrtpInput {
     std::uint16_t sequence = 0;  // RTP only
     std::uint32_t ssrc = 0;
   };
-  /// Produces the rollover counters to try, from 1 on. Rounds become longer and restart with short
-  /// ones, so that small numbers recur often. Each round begins at a random number: an attacker who
-  /// uses up some numbers cannot block one of them.
+  /// Produces the rollover counters to try, which are at least 1. The counters are tried in rounds
+  /// of growing length. After the longest round, the short rounds begin again, so that small
+  /// numbers recur often. Each round begins at a random number. An attacker whose packets use up
+  /// some numbers can therefore not choose which.
   class Search {
    public:
     std::uint32_t Next();
@@ -78,18 +83,19 @@ class SrtpInput {
     std::uint32_t at_ = 0;
   };
   struct Stream {
-    bool known = false;     // a packet has passed; then the fields below are valid:
-    std::uint64_t key = 0;  // serial number of the newest key that has fitted
+    bool known = false;     // a packet has passed, and the fields below are valid
+    std::uint64_t key = 0;  // serial number of the newest key that has decoded a packet
     std::uint32_t rollover = 0;
     std::uint16_t sequence = 0;
     unsigned failures = 0;  // since the last packet that passed
-    Time passed_at{};       // of that packet
+    Time passed_at{};       // time of the last packet that passed
     Search search;
   };
   struct Key {
     std::uint64_t serial = 0;
-    // Decoders of media, of RTCP, and for trials. RTCP has its own, because a media stream that is
-    // found restarts its decoder, which would forget the RTCP that has passed.
+    // The decoders of media, of RTCP, and for trials. RTCP has a separate decoder: when a media
+    // stream is found, its SSRC is restarted in the decoder of media, which removes all state of
+    // the SSRC.
     std::unique_ptr<SrtpDecoder> media;
     std::unique_ptr<SrtpDecoder> rtcp;
     std::unique_ptr<SrtpDecoder> trial;
@@ -125,7 +131,7 @@ class SrtpInput {
 
   // Used by the streaming thread only:
   std::vector<Key> keys_;   // oldest first
-  std::size_t in_use_ = 0;  // key of the last packet that passed
+  std::size_t in_use_ = 0;  // index of the key of the last packet that passed
   std::size_t newest_used_ = 0;
   std::optional<Time> forget_old_at_;
   std::map<StreamId, Stream> streams_;

@@ -12,7 +12,7 @@ struct SrtpSettings {
   std::string key;  // hex, "file:PATH" or "env:NAME"; empty: no SRTP
   std::string cipher = "aes-128-icm";
   std::string auth = "hmac-sha1-80";
-  std::string dtls_certificate;  // files; both are set, or none
+  std::string dtls_certificate;  // file paths; both are set, or neither
   std::string dtls_peer_certificate;
 
   bool by_dtls() const { return !dtls_certificate.empty() || !dtls_peer_certificate.empty(); }
@@ -30,10 +30,11 @@ struct SrtpPolicy {
   unsigned overhead;     // bytes added to each RTP packet
 };
 
-/// Returns nothing and sets `error` for unknown algorithms.
+/// Returns the algorithms that `settings` name. If one of them is unknown, sets `error` and returns
+/// nothing.
 std::optional<SrtpPolicy> SrtpPolicyOf(const SrtpSettings& settings, std::string* error);
-/// Reads the key from `source` as SrtpSettings::key describes. Returns nothing and sets `error` on
-/// failure. No error shows the key.
+/// Reads the key from `source`, whose form SrtpSettings::key describes. On failure, sets `error`
+/// and returns nothing. The text of an error never contains the key.
 std::optional<SrtpKey> ReadSrtpKey(const std::string& source, const SrtpPolicy& policy,
                                    std::string* error);
 

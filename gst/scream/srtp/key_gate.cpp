@@ -37,7 +37,7 @@ void KeyGate::Open() {
 
 GstPadProbeReturn KeyGate::OnPackets(GstPad* pad, GstPadProbeInfo* info) {
   if (is_open_) return GST_PAD_PROBE_PASS;
-  if (!IsFedLive(pad)) return GST_PAD_PROBE_OK;  // waits
+  if (!IsFedLive(pad)) return GST_PAD_PROBE_OK;  // the pad stays blocked
   const bool is_list = (info->type & GST_PAD_PROBE_TYPE_BUFFER_LIST) != 0;
   dropped_ += is_list ? gst_buffer_list_length(GST_PAD_PROBE_INFO_BUFFER_LIST(info)) : 1;
   return GST_PAD_PROBE_DROP;

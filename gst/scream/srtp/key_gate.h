@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Holds media back at their pads until there is an SRTP key.
+// Holds back media packets at their pads until there is an SRTP key.
 #pragma once
 #include <gst/gst.h>
 
@@ -14,11 +14,11 @@
 
 namespace lidar::gst {
 
-/// While the gate is shut, packets of live sources are dropped and counted, and other sources wait:
-/// for the key, a flush or a stop.
+/// While the gate is shut, packets of live sources are dropped and counted. Other sources wait
+/// until the gate opens, or until they are flushed or stopped.
 class KeyGate {
  public:
-  /// Shuts `pad` until Open(). Does nothing after Open().
+  /// Blocks the packets of `pad` until Open(). Does nothing if the gate is already open.
   static void Guard(const std::shared_ptr<KeyGate>& gate, GstPad* pad);
   void Open();
   bool is_open() const { return is_open_; }

@@ -76,8 +76,9 @@ std::unique_ptr<SrtpLayer> SrtpLayer::Create(const SrtpSettings& settings, const
   return layer;
 }
 
-/// The end that sends media uses the key at once. The other end uses its first key at once, and a
-/// later key once the media use it. Does nothing for an empty key.
+/// Adds a key to all inputs. The end that sends media encodes with the new key at once. The other
+/// end encodes with its first key at once, and with a later key when the media use this key. Does
+/// nothing for an empty key.
 bool SrtpLayer::AddKey(const SrtpKey& key) {
   if (key.empty()) return true;
   if (!std::all_of(inputs_.begin(), inputs_.end(),
@@ -142,7 +143,8 @@ bool SrtpLayer::ChangeKey(const std::string& source, std::string* error) {
     const std::lock_guard lock(mutex_);
     const std::string digest = DigestOf(*key);
     if (digest == digests_.back()) return true;
-    // The packet index begins at 0 with each key: a repeated key would encrypt two packets alike.
+    // The packet index begins at 0 with each key. If a key were used again, two packets would be
+    // encrypted with the same key and index.
     if (std::find(digests_.begin(), digests_.end(), digest) != digests_.end()) {
       *error = "this key was in use before; set a new key";
       return false;
@@ -172,7 +174,8 @@ bool SrtpLayer::IsDone(GstBuffer* packet) const {
   return places_.links.size() > 1 && !IsRtcp(packet);
 }
 
-/// Drops a packet that srtpenc refuses: it was sent before, or the key is used up.
+/// Protects the packets that leave the element. A packet is dropped if srtpenc refuses it, because
+/// it was sent before or because the key has protected as many packets as it may.
 GstPadProbeReturn SrtpLayer::OnOut(GstPad*, GstPadProbeInfo* info, gpointer data) {
   auto* self = static_cast<SrtpLayer*>(data);
   return MapPackets(info, [self](BufferPtr packet) {

@@ -21,7 +21,7 @@
 
 namespace lidar::gst {
 
-/// Linked pads of the bin's children, between which the layer is inserted.
+/// The linked pads of a bin's children between which the layer is inserted.
 struct SrtpPlace {
   GstElement* sender;         // screamtx or screamrx
   const char* out;            // its pad towards the socket
@@ -36,9 +36,10 @@ struct SrtpPlaces {
   std::function<void(GstBuffer*, const DtlsKeys::Addresses&)> send_dtls;
 };
 
-/// Lives from READY to NULL of its bin. All SSRCs use the same key. The layer protects packets that
-/// leave by `out`, and drops them until it has a key. Protect() protects RTP over several links
-/// once for all links. The input of each link has its own replay windows.
+/// Exists while its bin is in READY or above. All SSRCs use the same key. The layer protects the
+/// packets that leave through SrtpPlace::out, and drops them until there is a key. If there are
+/// several links, Protect() protects each RTP packet once for all links. The input of each link has
+/// its own replay windows.
 class SrtpLayer {
  public:
   /// Returns null and sets `error` if the key, the cipher or the srtp plugin is unusable.
@@ -48,21 +49,23 @@ class SrtpLayer {
   SrtpLayer(const SrtpLayer&) = delete;
   SrtpLayer& operator=(const SrtpLayer&) = delete;
 
-  /// Sums over all inputs.
+  /// Returns the sums over all inputs or, for key_changes, the maximum.
   SrtpCounts counts() const;
-  /// All zero without DTLS.
+  /// Returns zeros if DTLS is not used.
   DtlsCounts dtls_counts() const;
   bool by_dtls() const { return dtls_ != nullptr; }
-  /// DTLS runs only while the bin plays, because the sockets are read only then.
+  /// Starts or stops DTLS. DTLS runs only while the bin plays, because the sockets are read only
+  /// then.
   void SetPlaying(bool playing);
-  /// The gate opens with the first key or at the end of the layer, and may outlive the layer.
+  /// Returns the gate, which opens when there is a key or when the layer is destroyed. The gate may
+  /// outlive the layer.
   std::shared_ptr<KeyGate> gate() const { return gate_; }
-  /// Bytes added to each RTP packet.
+  /// Returns the number of bytes that are added to each RTP packet.
   unsigned overhead() const { return policy_.overhead; }
   BufferPtr Protect(GstBuffer* packet);
-  /// Adds the key that `source` names. The end that sends media uses it at once; the other end uses
-  /// it once the media use it. Returns false and sets `error` if there is no key or it was used
-  /// before.
+  /// Adds the key that `source` names. The end that sends media uses the new key at once. The other
+  /// end uses it after it has received media that were protected with it. If there is no key, or
+  /// the key was used before, sets `error` and returns false.
   bool ChangeKey(const std::string& source, std::string* error);
 
  private:
@@ -84,17 +87,19 @@ class SrtpLayer {
   std::mutex mutex_;                 // guards digests_
   std::deque<std::string> digests_;  // of all keys so far
 
-  std::unique_ptr<DtlsKeys> dtls_;  // uses all of the above
+  std::unique_ptr<DtlsKeys> dtls_;  // uses all members above
 };
 
 /// srtp-key (write-only), srtp-cipher, srtp-auth, dtls-certificate and dtls-peer-certificate.
 const std::array<Property<SrtpSettings>, 5>& SrtpRows();
-/// Creates the layer if `settings` ask for it. Returns false and posts an error if that fails.
+/// Creates the layer if `settings` ask for it. If that fails, posts an error message and returns
+/// false.
 bool StartSrtp(const SrtpSettings& settings, const SrtpPlaces& places,
                std::shared_ptr<SrtpLayer>* layer);
-/// Gives a running layer its new key. Returns false and posts a warning if that fails.
+/// Gives a running layer its new key. If that fails, posts a warning and returns false.
 bool TakeSrtpKey(GstElement* bin, SrtpLayer* layer, const std::string& key);
-/// Adds the counters of SRTP, and of DTLS where it is used; nothing without a layer.
+/// Adds the counters of SRTP and, if DTLS is used, the counters of DTLS. Adds nothing if there is
+/// no layer.
 void AddSrtpStats(const SrtpLayer* layer, GstStructure* stats);
 
 }  // namespace lidar::gst

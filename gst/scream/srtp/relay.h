@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The ends of a stock element that serves as a function.
+// The pads and events by which a stock element is used like a function.
 #pragma once
 #include <gst/gst.h>
 
@@ -10,8 +10,8 @@
 
 namespace lidar::gst {
 
-/// A pad that takes what the element pushes. Events end here, because the stream has its own
-/// events.
+/// A sink pad that passes the buffers of `element` to a function. It drops events, because the
+/// stream in which the buffers continue has its own events.
 class Relay {
  public:
   using Take = std::function<void(BufferPtr)>;
@@ -25,7 +25,7 @@ class Relay {
       gst_event_unref(event);
       return TRUE;
     });
-    GST_PAD_SET_ACCEPT_TEMPLATE(pad_.get());  // the caps change with a key
+    GST_PAD_SET_ACCEPT_TEMPLATE(pad_.get());  // the caps differ from key to key
     gst_pad_set_active(pad_.get(), TRUE);
     const PadPtr from(gst_element_get_static_pad(element, source));
     gst_pad_link(from.get(), pad_.get());
@@ -39,7 +39,7 @@ class Relay {
   PadPtr pad_{GST_PAD(gst_object_ref_sink(gst_pad_new("relay", GST_PAD_SINK)))};
 };
 
-/// Sends the events that precede buffers, unless they were sent before.
+/// Sends to `sink` the events that must precede buffers, unless they were sent before.
 inline void BeginStream(GstPad* sink, const char* caps) {
   if (gst_pad_has_current_caps(sink)) return;
   GstSegment segment;

@@ -32,7 +32,7 @@ using namespace lidar::gst;
 namespace {
 
 constexpr guint kIpUdpAndSrtpTag = 38;  // bytes
-/// Interval at which a stock receiver's rtpsession reports at low rates.
+/// The interval at which the rtpsession of a stock receiver sends reports at low rates.
 constexpr guint64 kFeedbackInterval = 500 * GST_MSECOND;
 
 struct AuxSettings {
@@ -64,7 +64,7 @@ static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE(
     "sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS("application/x-rtp"));
 static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE(
     "src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS("application/x-rtp"));
-// These pads replace the others if `session` is set.
+// These pads replace the pads sink and src if the property session is set.
 static GstStaticPadTemplate session_sink_template = GST_STATIC_PAD_TEMPLATE(
     "sink_%u", GST_PAD_SINK, GST_PAD_SOMETIMES, GST_STATIC_CAPS("application/x-rtp"));
 static GstStaticPadTemplate session_src_template = GST_STATIC_PAD_TEMPLATE(
@@ -125,7 +125,7 @@ static void OnReport(GstLidarScreamAux* self, GstEvent* event) {
   if (report) TxTakeReport(GST_LIDAR_SCREAM_TX(self->tx), *report);
 }
 
-/// Returns false if the next pad refuses packets: the session then gives them no number.
+/// Returns false if the next pad refuses packets. The session then gives them no number.
 static bool NextPadTakes(GstPad* src) {
   const PadPtr next(gst_pad_get_peer(src));
   return next && !GST_PAD_IS_FLUSHING(next.get()) && !GST_PAD_IS_EOS(next.get());
@@ -181,7 +181,7 @@ static GstPad* ReplaceGhost(GstLidarScreamAux* self, GstPad* old, const PadPtr& 
   return pad;
 }
 
-/// Names the pads after their session.
+/// Creates the pads anew, with names that follow from the property session.
 static void NamePads(GstLidarScreamAux* self) {
   if (self->tx == nullptr) return;
   const gint session = Snapshot(*self->state).session;

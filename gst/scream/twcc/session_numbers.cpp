@@ -12,7 +12,8 @@ namespace {
 constexpr const char* kEvent = "RTPTWCCPackets";
 constexpr guint kMaxId = 14;  // greatest id of extensions with one-byte headers
 
-/// Returns the URI of an extmap field, which is a string or has direction, URI and attributes.
+/// Returns the URI in an extmap field. The field is a string with the URI, or an array of
+/// direction, URI and attributes.
 const gchar* UriOf(const GValue* field) {
   if (field == nullptr) return nullptr;
   if (G_VALUE_HOLDS_STRING(field)) return g_value_get_string(field);
@@ -21,7 +22,8 @@ const gchar* UriOf(const GValue* field) {
   return G_VALUE_HOLDS_STRING(uri) ? g_value_get_string(uri) : nullptr;
 }
 
-/// A packet in rtpsession's event. `arrival` is unset if the packet is lost or has no time.
+/// A packet that an event of rtpsession reports. `arrival` is unset if the packet is lost or has no
+/// time.
 struct Reported {
   guint number = 0;
   std::optional<Duration> arrival;
@@ -34,16 +36,16 @@ std::optional<Reported> Read(const GstStructure* s) {
   if (!gst_structure_get_boolean(s, "lost", &lost)) return std::nullopt;
   if (!lost && gst_structure_get_uint64(s, "remote-ts", &remote) &&
       GST_CLOCK_TIME_IS_VALID(remote)) {
-    // A report's reference time is below one period, and its deltas sum to less than another
-    // period.
+    // A later time is invalid: the reference time of a report is below one period, and the sum of
+    // its deltas is below another period.
     if (remote > static_cast<guint64>((2 * rtcp::kTwccPeriod).count())) return std::nullopt;
     r.arrival = Duration{static_cast<std::int64_t>(remote)};
   }
   return r;
 }
 
-/// Returns the packets of a report, or none if `event` is no report. A report that is too long
-/// gives kMaxTwccPackets + 1 packets.
+/// Returns the packets of a report, or none if `event` is not a report. If the report is too long,
+/// returns kMaxTwccPackets + 1 packets.
 std::vector<const GstStructure*> PacketsOf(GstEvent* event) {
   std::vector<const GstStructure*> packets;
   const GstStructure* s = gst_event_get_structure(event);
@@ -84,7 +86,8 @@ void SessionNumbers::OnPacket(GstBuffer* buffer) {
   gst_rtp_buffer_unmap(&rtp);
 }
 
-/// The event has the size of each packet: a different size shows a different packet.
+/// Returns false if the reported packet has another size than the packet that passed here under the
+/// same number. It is then a different packet.
 bool SessionNumbers::IsOurs(const GstStructure* packet) const {
   guint number = 0;
   guint size = 0;

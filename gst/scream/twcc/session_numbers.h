@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Transport-wide numbers that a downstream rtpsession gives to our packets, and its reports.
+// The transport-wide numbers that a downstream rtpsession gives to our packets, and the reports
+// about these numbers.
 #pragma once
 #include <gst/gst.h>
 
@@ -11,25 +12,26 @@
 
 namespace lidar::gst {
 
-/// rtpsession numbers packets that have the extension, in order from 0, and reports them with their
-/// sizes in an upstream event. Not thread-safe.
+/// Tracks the numbers of packets that have the TWCC extension. rtpsession numbers these packets in
+/// order, from 0. It reports the packets, with their sizes, in an event upstream. Not thread-safe.
 class SessionNumbers {
  public:
   struct Stats {
     guint64 reports = 0;
     guint64 packets = 0;
-    guint64 mismatched = 0;  // reports about packets of others
+    guint64 mismatched = 0;  // reports about packets that did not pass here
   };
 
-  /// Reads the extension's id from the session's caps. Other caps have no id.
+  /// Reads the id of the TWCC extension from the session's caps. If `caps` have no id, packets are
+  /// not tracked.
   void OnCaps(const GstCaps* caps);
-  /// Notes a packet on its way to the session.
+  /// Call it for each packet that goes to the session.
   void OnPacket(GstBuffer* buffer);
-  /// Returns the report in an event of rtpsession. Returns nothing for other events, or if no
-  /// packet is ours.
+  /// Returns the report in an event of rtpsession. Returns nothing for another event, or if a
+  /// reported packet is not ours.
   std::optional<rtcp::CongestionFeedback> OnEvent(GstEvent* event);
   const Stats& stats() const { return stats_; }
-  /// Begins another run. The session's numbers go on.
+  /// Resets the counters for another run. The numbers continue, because the session continues them.
   void ResetStats() { stats_ = {}; }
 
  private:
@@ -37,7 +39,7 @@ class SessionNumbers {
 
   guint8 id_ = 0;  // 0: the caps have no id
   std::uint16_t next_ = 0;
-  std::deque<guint> sizes_;  // payload bytes of the packets up to next_
+  std::deque<guint> sizes_;  // payload bytes of the last packets before next_
   rtcp::TwccMapper mapper_;
   Stats stats_;
 };

@@ -6,15 +6,15 @@
 namespace lidar::gst {
 namespace {
 
-/// Shifts `entry` after a flush.
+/// Returns the entry time, corrected by the shift `s` if it applies (see EntryShift).
 GstClockTime Shifted(EntryShift* s, GstClockTime entry, GstClockTime base_time, GstClockTime now) {
   if (s->due) *s = {false, false, base_time, now > entry ? now - entry : 0};
   if (std::exchange(s->moved, false)) s->base_time = base_time;
   return s->base_time == base_time ? entry + s->shift : entry;
 }
 
-/// Returns the clock time at which input that is not live may enter: the time at which a live
-/// source would have made this input.
+/// Returns the clock time at which input that is not live may enter the queue. It is the time at
+/// which a live source would have produced the input.
 GstClockTime EntryTime(GstElement* element, const TxStream& stream, GstBuffer* buffer) {
   const GstClockTime pts = GST_BUFFER_PTS(buffer);
   if (!GST_CLOCK_TIME_IS_VALID(pts) || stream.segment.format != GST_FORMAT_TIME)
@@ -63,7 +63,8 @@ void EntryGate::Wait(TxLock& lock, GstElement* element, Duration max_age, TxStre
   WaitForTime(lock, element, stream, first);
 }
 
-/// An empty queue has room before PLAYING, because a sink needs packets to preroll.
+/// Waits until the queue has room. Before PLAYING, only an empty queue has room, which lets the
+/// packets pass that a sink needs to preroll.
 void EntryGate::WaitForRoom(TxLock& lock, Duration max_age, const TxStream& stream) {
   changed_.wait(lock, [&] {
     if (Check(stream) != GST_FLOW_OK) return true;
@@ -72,7 +73,8 @@ void EntryGate::WaitForRoom(TxLock& lock, Duration max_age, const TxStream& stre
   });
 }
 
-/// Returns at once if the pipeline has no clock or does not play.
+/// Waits for the entry time of `first`. Returns at once if the pipeline has no clock or does not
+/// play.
 void EntryGate::WaitForTime(TxLock& lock, GstElement* element, TxStream& stream, GstBuffer* first) {
   GstClockTime entry = EntryTime(element, stream, first);
   GstClock* clock = gst_element_get_clock(element);

@@ -12,9 +12,9 @@ namespace lidar::gst {
 
 using TxLock = std::unique_lock<std::mutex>;
 
-/// Live input enters at once. Other input waits for its time on the pipeline's clock and for room
-/// in the queue, each stream in its own thread. All methods need the element's lock; waits release
-/// it.
+/// Lets live input into the queue at once. Other input waits, in the streaming thread of its pad,
+/// for its time on the pipeline's clock and for room in the queue. Call all methods with the
+/// element's lock held. A method that waits releases the lock meanwhile.
 class EntryGate {
  public:
   explicit EntryGate(GstClock* clock) : clock_(clock) {}
@@ -23,20 +23,20 @@ class EntryGate {
   void Open() { Set(true, GST_FLOW_OK); }
   /// Ends all waits and closes the queues; chain functions return FLUSHING.
   void Close(const TxStreams& streams);
-  /// Chain functions return `flow`, which came from downstream.
+  /// Sets the result of the chain functions to `flow`, which a push downstream has returned.
   void set_flow(GstFlowReturn flow) { Set(open_, flow); }
   GstFlowReturn flow() const { return flow_; }
   bool open() const { return open_; }
   void set_playing(const TxStreams& streams, bool playing);
-  /// Packets have left the queue.
+  /// Call it after packets have left the queue. Wakes the threads that wait for room.
   void OnRoom() { changed_.notify_all(); }
   /// Wakes the thread of `stream` if it waits here.
   void Release(TxStream& stream);
 
-  /// Returns the result of the chain function of `stream`; OK if it may queue.
+  /// Returns the result for the chain function of `stream`, which is OK if the function may queue.
   GstFlowReturn Check(const TxStream& stream) const;
-  /// Waits until `first` may enter. The queue of `stream` is full while its head is older than
-  /// `max_age`.
+  /// Waits until the buffer `first` may enter the queue of `stream`. The queue is full if its
+  /// oldest packet has waited for `max_age` or longer.
   void Wait(TxLock& lock, GstElement* element, Duration max_age, TxStream& stream,
             GstBuffer* first);
 

@@ -25,7 +25,8 @@ const char* ToString(scream::FeedbackResult result) {
   return "?";
 }
 
-/// Keeps receipts of the arrived packets for payloaders. The caller holds the lock.
+/// Stores which packets have arrived, for the payloaders that want receipts. The caller holds the
+/// lock.
 void KeepReceipts(TxState& state, const rtcp::CongestionFeedback& report) {
   for (const rtcp::SsrcReport& block : report.blocks) {
     const auto id = state.controller->FindStream(block.ssrc);
@@ -35,8 +36,8 @@ void KeepReceipts(TxState& state, const rtcp::CongestionFeedback& report) {
   }
 }
 
-/// Takes a receiver's request for a key unit of our streams. If RTCP goes on to another element,
-/// that element sends the request upstream.
+/// Handles a receiver's request for a key unit of one of our streams. Does nothing if rtcp_src is
+/// linked, because the element behind rtcp_src then sends the request upstream.
 void TakeKeyRequest(GstLidarScreamTx* self, ByteView packet) {
   const auto ssrc = ParseKeyRequest(packet);
   if (!ssrc || gst_pad_is_linked(self->rtcp_src)) return;
@@ -45,13 +46,15 @@ void TakeKeyRequest(GstLidarScreamTx* self, ByteView packet) {
   if (!state.controller || !state.gate.open()) return;
   const auto id = state.controller->FindStream(*ssrc);
   TxStream* stream = id ? FindStream(state, *id) : nullptr;
-  // A video encoder gets such requests from the element that manages its RTP session.
+  // The request is for LiDAR streams only. A video encoder gets the request from the element that
+  // manages its RTP session.
   if (stream == nullptr || !stream->wants_receipts) return;
   stream->key_unit_due = true;
   state.reporter.Evaluate(TxNow(state));
 }
 
-/// Converts the report of a link to the controller's numbers, and gives it to the controller.
+/// Gives the report to the controller. If screamtx is one of several links, first converts the
+/// report to the sequence numbers that its controller uses.
 scream::FeedbackResult GiveToController(TxState& state, Time now,
                                         const rtcp::CongestionFeedback& report) {
   if (!state.link) return state.controller->OnFeedback(now, report);
@@ -65,7 +68,8 @@ scream::FeedbackResult GiveToController(TxState& state, Time now,
   return result;
 }
 
-/// Returns false if the report is not about our packets. The caller holds the lock.
+/// Handles a report. Returns false if the report is not about our packets. The caller holds the
+/// lock.
 bool Take(GstLidarScreamTx* self, const rtcp::CongestionFeedback& report, GSocketAddress* from) {
   TxState& state = *self->state;
   const Time now = TxNow(state);
@@ -78,8 +82,8 @@ bool Take(GstLidarScreamTx* self, const rtcp::CongestionFeedback& report, GSocke
     state.controller->OnRouteChange(now);
   }
   if (result == scream::FeedbackResult::kAccepted) state.pacing.OnAccepted(now);
-  // A report by TWCC does not name a receiver: elements behind its session may still drop the
-  // packets.
+  // A report that comes from TWCC does not name a receiver. The packets have arrived at the RTP
+  // session of the receiver, but elements behind the session may still drop them.
   if (result == scream::FeedbackResult::kAccepted && report.sender_ssrc != 0)
     KeepReceipts(state, report);
   state.reporter.Evaluate(now);
@@ -87,7 +91,8 @@ bool Take(GstLidarScreamTx* self, const rtcp::CongestionFeedback& report, GSocke
   return true;
 }
 
-/// Gives a CCFB packet to the controller. Returns false if it is not for us.
+/// Parses a CCFB packet and gives it to the controller. Returns false if the packet is malformed or
+/// not about our packets.
 bool Feed(GstLidarScreamTx* self, ByteView packet, GSocketAddress* from) {
   TxState& state = *self->state;
   TxLock lock(state.mutex);

@@ -6,7 +6,7 @@
 
 namespace lidar::gst {
 
-/// Handles a report as if it had come in RTCP, but with the full resolution of its times. Any
+/// Handles a report as if it had arrived in RTCP, but with the full resolution of its times. Any
 /// thread may call it.
 void TxTakeReport(GstLidarScreamTx* tx, const rtcp::CongestionFeedback& report);
 

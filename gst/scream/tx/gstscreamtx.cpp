@@ -100,8 +100,8 @@ static bool HasPad(const TxState& state, const std::string& name) {
                      [&](const auto& s) { return name == GST_PAD_NAME(s->pad); });
 }
 
-/// Returns the name for a pad that was requested as `wanted`, or an empty text if another pad has
-/// it.
+/// Returns the name for a pad that was requested as `wanted`, or an empty text if another pad
+/// already has this name.
 static std::string NewPadName(TxState& state, const gchar* wanted) {
   guint index = 0;
   if (wanted == nullptr || sscanf(wanted, "sink_%u", &index) != 1) index = state.next_pad;
@@ -164,7 +164,7 @@ static void ReleasePad(GstElement* element, GstPad* pad) {
     stream->flushing = true;
     state.gate.Release(*stream);
   }
-  gst_pad_set_active(pad, FALSE);  // returns after the pad's thread has left
+  gst_pad_set_active(pad, FALSE);  // waits until the pad's thread has left its functions
   if (flushes_src) TxFlush(GST_LIDAR_SCREAM_TX(element), *stream, gst_event_new_flush_stop(TRUE));
   gst_element_remove_pad(element, pad);
   {
@@ -174,7 +174,7 @@ static void ReleasePad(GstElement* element, GstPad* pad) {
   gst_child_proxy_child_removed(GST_CHILD_PROXY(element), G_OBJECT(pad), name.get());
 }
 
-/// Returns false, after an element error, if `tuning` is wrong.
+/// Checks the property tuning. If it is wrong, posts an error message and returns false.
 static bool TakesTuning(GstElement* element) {
   lidar::scream::Parameters parameters;
   const TxSettings settings = Snapshot(StateOf(element));

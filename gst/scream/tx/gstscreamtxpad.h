@@ -14,7 +14,7 @@ namespace lidar::gst {
 struct TxStream;
 
 TxPadSettings PadSettings(GstPad* pad);
-/// Returns the stream that screamtx keeps for `pad`. Owned by screamtx.
+/// Returns the stream that screamtx keeps for `pad`. screamtx owns the stream.
 TxStream* PadStream(GstPad* pad);
 void SetPadStream(GstPad* pad, TxStream* stream);
 }  // namespace lidar::gst

@@ -12,13 +12,13 @@ namespace {
 bool IsLive(GstPad* pad) {
   const QueryPtr query(gst_query_new_latency());
   gboolean live = TRUE;
-  // Upstream counts as live, and is never delayed, if it does not answer.
+  // If upstream does not answer, it counts as live, and its packets are never delayed.
   if (gst_pad_peer_query(pad, query.get()))
     gst_query_parse_latency(query.get(), &live, nullptr, nullptr);
   return live != FALSE;
 }
 
-/// Returns the scan of a packet, if the payloader noted it.
+/// Returns the id of the packet's scan, or nothing if the payloader has not attached it.
 std::optional<std::uint32_t> ScanOf(GstBuffer* buffer) {
   GstLidarSlice slice;
   if (!gst_lidar_buffer_get_slice(buffer, &slice)) return std::nullopt;
@@ -52,7 +52,7 @@ void Enqueue(TxState& state, TxStream& stream, BufferPtr buffer, Time now) {
   state.reporter.notices().watch().OnInput(now);
 }
 
-/// Queries upstream once per stream.
+/// Returns true if upstream is live. Queries upstream only once per stream.
 bool KnownLive(TxState& state, TxStream& stream, GstPad* pad) {
   {
     TxLock lock(state.mutex);
@@ -107,8 +107,8 @@ void OnCaps(GstLidarScreamTx* self, GstPad* pad, TxStream& stream, GstEvent* eve
   if (start) gst_pad_push_event(pad, start.release());
 }
 
-/// Call it when a stream begins after an end. If the end of all streams was sent, the output begins
-/// anew, too.
+/// Call it when a stream begins after its end. If the end of all streams was already sent, the
+/// output begins anew, too.
 void BeginAnew(TxState& state) {
   if (state.pacing.end_sent()) state.merger.BeginAnew();
   state.pacing.ForgetEnd();
@@ -122,7 +122,8 @@ void OnFlushStart(GstLidarScreamTx* self, TxStream& stream) {
   state.gate.Release(stream);
 }
 
-/// A flush that went downstream has removed the end and the segment there.
+/// Handles the end of a flush. If the flush went downstream, it has removed the EOS and the segment
+/// there.
 void OnFlushStop(GstLidarScreamTx* self, TxStream& stream, GstEvent* event, bool flushes_src) {
   TxState& state = *self->state;
   TxLock lock(state.mutex);
@@ -144,8 +145,9 @@ void OnFlushStop(GstLidarScreamTx* self, TxStream& stream, GstEvent* event, bool
 
 }  // namespace
 
-/// A flush of the only stream goes downstream. A flush of one of several streams does not. Pads may
-/// come and go during a flush, so its end goes where its start went.
+/// Handles the start or end of a flush. The flush of the only stream goes downstream, whereas the
+/// flush of one of several streams does not. Pads may be added or removed during a flush, so the
+/// end of a flush goes downstream if its start did.
 gboolean TxFlush(GstLidarScreamTx* self, TxStream& stream, GstEvent* event) {
   TxState& state = *self->state;
   const EventPtr owner(event);
@@ -174,7 +176,7 @@ void Remember(TxState& state, TxStream& stream, GstEvent* event) {
   switch (GST_EVENT_TYPE(event)) {
     case GST_EVENT_STREAM_START:
       stream.live.reset();
-      // If the other streams have ended, a new pad begins the output anew.
+      // If the end was already sent, the stream of a new pad begins the output anew, too.
       if (std::exchange(stream.eos, false) || state.pacing.end_sent()) BeginAnew(state);
       break;
     case GST_EVENT_SEGMENT:

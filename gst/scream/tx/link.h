@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The owner of a screamtx that is one of several links of a stream.
+// The interface by which a screamtx, as one of several links of a stream, calls its owner.
 #pragma once
 #include <gst/gst.h>
 
@@ -12,27 +12,28 @@
 
 namespace lidar::gst {
 
-/// screamtx calls the methods with its lock held, from any of its threads.
+/// screamtx calls the methods from any of its threads, with its lock held.
 class TxLink {
  public:
   virtual ~TxLink() = default;
-  /// Returns true if this link must still send the packet.
+  /// Returns true if this link still has to send the packet.
   virtual bool Wants(Time now, guint32 ssrc, guint16 seq) = 0;
-  /// A packet leaves. Returns the number under which the controller counts it.
+  /// Called when this link sends a packet. Returns the sequence number by which this link's
+  /// controller identifies the packet.
   virtual guint16 OnSent(Time now, guint32 ssrc, guint16 seq) = 0;
-  /// A packet was dropped. Returns true if another link delivered it.
+  /// Called when this link drops a packet. Returns true if another link has delivered the packet.
   virtual bool OnDropped(Time now, guint32 ssrc, guint16 seq) = 0;
-  /// Converts a report to the numbers of OnSent(). Returns nothing if it names packets that this
-  /// link never sent.
+  /// Converts the sequence numbers in a report to those that OnSent() has returned. Returns nothing
+  /// if the report names packets that this link never sent.
   virtual std::optional<rtcp::CongestionFeedback> OnFeedback(
       Time now, const rtcp::CongestionFeedback& report) = 0;
-  /// Bytes at the end of each packet that are not media.
+  /// Returns the number of bytes at the end of each packet that are not media.
   virtual gsize trailer() const = 0;
-  /// Takes the controller's statistics after each report.
+  /// Called after each report, with the controller's statistics.
   virtual void OnPath(const scream::Statistics& statistics) = 0;
 };
 
-/// Sets the owner (null: a single link). Call it below READY.
+/// Sets the owner, or null if this screamtx is the only link. Call it below READY.
 void TxSetLink(GstLidarScreamTx* tx, std::shared_ptr<TxLink> link);
 
 }  // namespace lidar::gst

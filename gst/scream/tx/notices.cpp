@@ -9,12 +9,12 @@
 namespace lidar::gst {
 namespace {
 
-// Fewer dropped frames need no warning, because an outage may cause them.
+// A stream that has dropped fewer frames causes no warning, because an outage may be the reason.
 constexpr guint64 kFramesUntilWarning = 20;
-// A sum with a longer interval may exceed the range of a time.
+// A longer interval, added to a time, may exceed the range of the time.
 constexpr Duration kLongestInterval = std::chrono::hours(24 * 365);
 
-/// Returns host and port of the sink behind `src`, if they can be found.
+/// Returns the host and port of the sink behind `src`, or an empty text if they cannot be found.
 std::string Destination(GstPad* src) {
   PadPtr pad(GST_PAD(gst_object_ref(src)));
   for (int hops = 0; hops < 8 && pad; ++hops) {
@@ -59,7 +59,7 @@ void WarnOfUnheeded(GstElement* element) {
 }  // namespace
 
 void Notices::Reset(const scream::Controller& controller, Time now) {
-  // The property keeps its estimate until there is a new one.
+  // The property estimated-bitrate keeps its value until the new controller has an estimate.
   Notices fresh;
   fresh.estimated_bps_ = estimated_bps_;
   fresh.estimate_due_ = estimate_due_;
@@ -77,7 +77,8 @@ bool Notices::Evaluate(const scream::Controller& controller, Duration stats_inte
   }
   ecn_ = controller.ecn_state();
   const Time next = now + std::min(stats_interval, kLongestInterval);
-  if (stats_interval > Duration{0}) next_stats_ = std::min(next_stats_, next);  // shorter interval
+  // The next statistics are due earlier if the interval has become shorter.
+  if (stats_interval > Duration{0}) next_stats_ = std::min(next_stats_, next);
   if (stats_interval > Duration{0} && now >= next_stats_) {
     next_stats_ = next;
     stats_due_ = true;

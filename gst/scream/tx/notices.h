@@ -13,7 +13,7 @@
 
 namespace lidar::gst {
 
-/// Call its methods with the element's lock, except Post() and PostUnheard().
+/// Call its methods with the element's lock held, except Post() and PostUnheard().
 class Notices {
  public:
   /// Messages to post after the lock is released.
@@ -25,29 +25,31 @@ class Notices {
     bool unheeded = false;
   };
 
-  /// Starts with a new controller.
+  /// Resets the state for a new controller.
   void Reset(const scream::Controller& controller, Time now);
   FeedbackWatch& watch() { return watch_; }
-  /// Notes that no encoder took a target.
+  /// Notes that no encoder has handled a target-bitrate event.
   void OnUnheeded() { unheeded_ = true; }
   guint estimated_bps() const { return estimated_bps_; }
 
-  /// Compares the state with the last messages. Returns true if a message is due.
+  /// Compares the controller's state with the last messages. Returns true if a message is due.
   bool Evaluate(const scream::Controller& controller, Duration stats_interval, Time now);
   bool due() const;
-  /// `most_dropped`: dropped frames of the stream that dropped most.
+  /// Returns the messages that are due. `most_dropped` is the highest number of dropped frames of
+  /// any stream.
   Batch Take(GstObject* element, guint64 most_dropped);
-  /// Time at which Evaluate() finds statistics due.
+  /// Returns the time at which Evaluate() finds that statistics are due.
   Time next_stats() const { return next_stats_; }
 
   static void Post(GstElement* element, GstPad* src, Batch batch);
-  /// Returns true if the end of the stream needs a warning that there was no receiver.
+  /// Call it at the end of the stream. Returns true if the caller must warn, by PostUnheard(), that
+  /// there was no receiver.
   bool TakeUnheard(Time now) { return warn_of_silence_(watch_.EndsUnheard(now)); }
-  /// Call it before the EOS event is pushed.
+  /// Warns that there was no receiver. Call it before the EOS event is pushed.
   static void PostUnheard(GstElement* element, GstPad* src);
 
  private:
-  /// A warning that is posted once.
+  /// A condition that is true at most once. It guards a warning that is posted once.
   class Once {
    public:
     bool operator()(bool wanted) { return wanted && !std::exchange(done_, true); }

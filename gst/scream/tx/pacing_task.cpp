@@ -11,8 +11,9 @@ namespace lidar::gst {
 namespace {
 
 constexpr std::size_t kMaxBatch = 64;
-constexpr Duration kReceiverTimeout = std::chrono::seconds(1);  // then the receiver is gone
-constexpr int kByeCopies = 3;                                   // the network may lose some
+// The receiver is gone if it has acknowledged nothing for this time.
+constexpr Duration kReceiverTimeout = std::chrono::seconds(1);
+constexpr int kByeCopies = 3;  // the network may lose some
 
 bool AllEnded(const TxState& state) {
   return !state.streams.empty() && std::all_of(state.streams.begin(), state.streams.end(),
@@ -35,7 +36,7 @@ GstFlowReturn PushRtcp(GstPad* src, const std::vector<std::uint8_t>& rtcp) {
   return gst_pad_push(src, gst_buffer_new_memdup(rtcp.data(), rtcp.size()));
 }
 
-/// Sends goodbyes for `ssrcs`, then ends the stream.
+/// Sends an RTCP BYE for `ssrcs`, and then EOS.
 void PushEnd(GstPad* src, const std::vector<guint32>& ssrcs) {
   const auto bye = BuildBye(ssrcs);
   for (int i = 0; i < kByeCopies && !bye.empty(); ++i) PushRtcp(src, bye);
@@ -118,7 +119,8 @@ PacingTask::Batch PacingTask::NextBatch(Time now) {
   return batch;
 }
 
-/// Drops live input that waited too long: it is useless and delays newer input.
+/// Drops live packets that have waited too long, because they are useless to the receiver and delay
+/// newer packets.
 void PacingTask::DropLate(TxStream& stream, Time now) {
   std::size_t late = state().controller->LatePackets(now, stream.id);
   if (late == 0) return;
@@ -142,7 +144,8 @@ void PacingTask::DropLate(TxStream& stream, Time now) {
   if (stream.is_video) stream.key_unit_due = true;
 }
 
-/// Drops packets that another link has delivered meanwhile, or that are late on all links.
+/// Drops packets at the head of the queue that another link has already delivered, or that are too
+/// late on all links.
 void PacingTask::DropUnwanted(TxStream& stream, Time now) {
   TxState& s = state();
   while (!stream.queue.empty() && stream.queue.front().buffer) {
@@ -156,7 +159,8 @@ void PacingTask::DropUnwanted(TxStream& stream, Time now) {
   }
 }
 
-/// Takes the first packet of `stream`, which the controller chose, and accounts for it.
+/// Removes the first packet from the queue of `stream`, which the controller chose, and counts the
+/// packet as sent.
 BufferPtr PacingTask::TakePacket(TxStream& stream, Ecn ecn, Time now) {
   TxState& s = state();
   TxItem item = std::move(stream.queue.front());
@@ -180,7 +184,7 @@ void PacingTask::CollectPackets(Time now, Batch* batch) {
     const auto decision = state().controller->NextSend(now);
     if (!decision || decision->time > now) return;
     TxStream* stream = FindStream(state(), decision->stream);
-    // An event ahead of the packet goes first, in the next round.
+    // If an event is ahead of the packet, the next round sends the event first.
     if (stream == nullptr || stream->queue.empty() || !stream->queue.front().buffer) return;
     batch->packets.push_back(TakePacket(*stream, decision->ecn, now));
   }
@@ -192,7 +196,8 @@ void PacingTask::OnAccepted(Time now) {
     end_deadline_ = now + std::max(kReceiverTimeout, 2 * state().max_queue_delay);
 }
 
-/// Returns true, once, when all packets have left or the deadline of the end has passed.
+/// Returns true once: when all streams have ended, and either all packets have been sent or the
+/// deadline of the end has passed.
 bool PacingTask::Drained(Time now) {
   TxState& s = state();
   if (!AllEnded(s) || end_sent_) return false;
@@ -240,7 +245,7 @@ GstFlowReturn PacingTask::Push(Batch batch) {
   if (batch.event) gst_pad_push_event(self_->src, batch.event.release());
   if (!batch.packets.empty()) flow = PushPackets(self_->src, std::move(batch.packets));
   if (!batch.report.empty() && flow == GST_FLOW_OK) flow = PushRtcp(self_->src, batch.report);
-  // An application may stop at the end, so the warning goes first.
+  // The warning is posted before EOS, because an application may stop at EOS.
   if (batch.unheard) Notices::PostUnheard(GST_ELEMENT(self_), self_->src);
   if (batch.end) PushEnd(self_->src, batch.goodbyes);
   return flow;

@@ -15,20 +15,21 @@ namespace lidar::gst {
 
 struct TxState;
 
-/// Call Start(), Stop() and Pause() without the element's lock, other methods with it. The task
-/// pushes without it.
+/// Call Start(), Stop() and Pause() without the element's lock, and the other methods with it. The
+/// task pushes without the lock.
 class PacingTask {
  public:
   explicit PacingTask(GstLidarScreamTx* self) : self_(self) {}
 
   bool Start();
   bool Stop();
-  /// Stops until the next Start(); chain functions return `flow`.
+  /// Pauses the task until the next Start(). Until then, chain functions return `flow`.
   void Pause(GstFlowReturn flow);
 
-  /// Makes the task check its conditions again.
+  /// Ends the task's wait, so that the task checks its conditions again.
   void Wake();
-  /// A packet was queued. A task that waits for its pace checks the queue soon enough.
+  /// Call it after a packet was queued. If the task waits for the next sending time, it is not
+  /// woken, because it checks the queue at that time.
   void OnQueued() {
     if (!waits_for_pace_) Wake();
   }
@@ -36,10 +37,10 @@ class PacingTask {
     settings_changed_ = true;
     Wake();
   }
-  /// Call it when a receiver acknowledged packets. Delays the deadline of the end if input is not
-  /// live.
+  /// Call it when a receiver has acknowledged packets. If some input is not live, postpones the
+  /// deadline at which the stream ends even with packets in the queue.
   void OnAccepted(Time now);
-  /// Call it when the stream begins anew: a new end is then sent, too.
+  /// Call it when the stream begins anew, so that the next end of the stream is sent, too.
   void ForgetEnd();
   bool end_sent() const { return end_sent_; }
 
@@ -47,11 +48,11 @@ class PacingTask {
   /// The output of a round: packets, or an event.
   struct Batch {
     std::vector<BufferPtr> packets;
-    std::vector<std::uint8_t> report;  // RTCP that leaves with the packets
+    std::vector<std::uint8_t> report;  // RTCP that is pushed after the packets
     EventPtr event;
     bool end = false;
     std::vector<guint32> goodbyes;
-    bool unheard = false;  // a stream without a receiver ends
+    bool unheard = false;  // the stream ends, and no receiver was heard
 
     bool empty() const { return packets.empty() && !event && !end; }
   };
@@ -69,7 +70,7 @@ class PacingTask {
   TxState& state() const;
 
   GstLidarScreamTx* self_;
-  GstClockID timer_ = nullptr;  // the present wait, not owned
+  GstClockID timer_ = nullptr;  // the current wait, not owned
   bool waits_for_pace_ = false;
   bool settings_changed_ = false;
   std::optional<Time> end_deadline_;

@@ -15,7 +15,7 @@ gint IsNot(gconstpointer item, gconstpointer excluded) {
   return same ? 1 : 0;
 }
 
-/// Returns the pad of the stream whose SSRC the event names; transfer full, or NULL.
+/// Returns a new reference to the pad of the stream whose SSRC the event names, or NULL.
 GstPad* PadOfSsrc(TxState& state, GstEvent* event) {
   guint ssrc = 0;
   const GstStructure* s = gst_event_get_structure(event);
@@ -27,7 +27,7 @@ GstPad* PadOfSsrc(TxState& state, GstEvent* event) {
   return stream == nullptr ? nullptr : GST_PAD(gst_object_ref(stream->pad));
 }
 
-/// Adds the longest stay in the queue to the latency of upstream.
+/// Adds max_queue_delay, the longest time that a packet waits in the queue, to upstream's latency.
 gboolean AnswerLatency(GstPad* pad, GstObject* parent, GstQuery* query) {
   if (!gst_pad_query_default(pad, parent, query)) return FALSE;
   if (!ReadLatency(query).live) return TRUE;
@@ -39,7 +39,7 @@ gboolean AnswerLatency(GstPad* pad, GstObject* parent, GstQuery* query) {
 
 }  // namespace
 
-/// RTP and RTCP are separate: src is linked to the sink pads, rtcp_src to rtcp_sink.
+/// RTP and RTCP are separate: the sink pads are linked to src, and rtcp_sink to rtcp_src.
 GstIterator* TxLinksOf(GstPad* pad, GstObject* parent) {
   auto* self = GST_LIDAR_SCREAM_TX(parent);
   if (pad != self->src)
@@ -69,7 +69,7 @@ gboolean TxSrcQuery(GstPad* pad, GstObject* parent, GstQuery* query) {
 }
 
 gboolean TxSinkQuery(GstPad* pad, GstObject* parent, GstQuery* query) {
-  // A serialized query would overtake queued packets.
+  // A serialized query is refused, because it would overtake queued packets.
   if (GST_QUERY_IS_SERIALIZED(query)) return FALSE;
   return gst_pad_query_default(pad, parent, query);
 }

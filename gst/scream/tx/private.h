@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The inside of screamtx: what its parts share.
+// The internal state of screamtx, which its parts share.
 //
 //     sink pads ── EntryGate ──▶ TxStream::queue ──▶ PacingTask ── StreamMerger ──▶ src
 //                                     │ controller decides
 //     rtcp_sink ──▶ controller ──▶ UpstreamReporter ──▶ events upstream, messages
 //
-// Threads: the sink pads' streaming threads queue packets; the pacing task on the src pad takes
-// them out at the controller's times; the RTCP pad's thread gives feedback to the controller and
-// finds the events that are due; the reporter's thread sends them, so that a slow encoder delays
-// neither of the others. One mutex guards all that is shared; no thread holds it while pushing,
-// posting, notifying or waiting.
+// Threads: the streaming threads of the sink pads queue packets. The pacing task on the src pad
+// removes packets from the queues at the controller's times. The thread of rtcp_sink gives feedback
+// to the controller and finds the events that are due. The reporter's thread sends these events, so
+// that a slow encoder does not delay the other threads. One mutex guards all shared state. No
+// thread holds the mutex while it pushes, posts, notifies or waits.
 #pragma once
 #include <gst/gst.h>
 
@@ -42,16 +42,16 @@ struct TxState {
   std::mutex mutex;  // guards all members but the clock
   GstClock* clock = gst_system_clock_obtain();
   TxSettings settings;
-  Duration max_queue_delay{};                    // of this run
-  std::optional<scream::Controller> controller;  // set from the first change to PAUSED on
+  Duration max_queue_delay{};                    // as it was when this run began
+  std::optional<scream::Controller> controller;  // exists from the first change to PAUSED on
   TxStreams streams;
   guint next_pad = 0;
   rtcp::CcfbParser parser;
   FeedbackPeer feedback_peer;
   guint64 malformed_rtcp = 0;
-  guint64 frames_dropped = 0;     // of all streams, those of released pads included
-  guint64 reports_of_others = 0;  // of packets that this link never sent
-  std::shared_ptr<TxLink> link;   // null for a single link
+  guint64 frames_dropped = 0;     // of all streams, including those of released pads
+  guint64 reports_of_others = 0;  // about packets that this link never sent
+  std::shared_ptr<TxLink> link;   // null if this is the only link
 
   EntryGate gate{clock};
   StreamMerger merger;
@@ -74,15 +74,15 @@ namespace lidar::gst {
 
 // Call these with the lock held, except for TxNow():
 
-/// Monotonic time, as the controller takes it.
+/// Returns the time of the monotonic system clock, which the controller uses.
 Time TxNow(const TxState& state);
 TxStream* FindStream(TxState& state, scream::StreamId id);
-/// Gives the controller the changed settings of `stream`.
+/// Gives the changed settings of `stream` to the controller.
 void Configure(TxState& state, TxStream& stream);
-/// Drops the packets and events of `stream`.
+/// Drops all packets and events in the queue of `stream`.
 void ClearQueue(TxState& state, TxStream& stream, Time now);
-/// Drops packets, segments and EOS, as a flush does. Caps and other sticky events stay, because
-/// upstream does not repeat them.
+/// Drops packets, segments and EOS from the queue, as a flush does. Caps and other sticky events
+/// stay in the queue, because upstream does not send them again.
 void FlushQueue(TxState& state, TxStream& stream, Time now);
 StructurePtr StatsOf(TxState& state);
 
@@ -93,13 +93,14 @@ void SettingsChanged(GstLidarScreamTx* self);
 GstFlowReturn TxChain(GstPad* pad, GstObject* parent, GstBuffer* buffer);
 GstFlowReturn TxChainList(GstPad* pad, GstObject* parent, GstBufferList* list);
 gboolean TxSinkEvent(GstPad* pad, GstObject* parent, GstEvent* event);
-/// Handles the start or end of a flush of `stream`. Call it without the lock. Takes the event.
+/// Handles the FLUSH_START or FLUSH_STOP event of a flush of `stream`. Takes ownership of the
+/// event. Call it without the lock.
 gboolean TxFlush(GstLidarScreamTx* self, TxStream& stream, GstEvent* event);
 // feedback.cpp: the pad rtcp_sink
 GstFlowReturn TxRtcpChain(GstPad* pad, GstObject* parent, GstBuffer* buffer);
 
 // pads.cpp: queries and links.
-// RTP and RTCP are separate: src is linked to the sink pads, rtcp_src to rtcp_sink.
+// RTP and RTCP are separate: the sink pads are linked to src, and rtcp_sink to rtcp_src.
 GstIterator* TxLinksOf(GstPad* pad, GstObject* parent);
 gboolean TxSrcEvent(GstPad* pad, GstObject* parent, GstEvent* event);
 gboolean TxSrcQuery(GstPad* pad, GstObject* parent, GstQuery* query);

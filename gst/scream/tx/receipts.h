@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Received packets of a stream, kept for its payloader.
+// Records which packets of a stream were received, for the stream's payloader.
 #pragma once
 #include <vector>
 
@@ -9,16 +9,17 @@
 
 namespace lidar::gst {
 
-/// Call with the element's lock held.
+/// Call its methods with the element's lock held.
 class PacketReceipts {
  public:
   void Add(guint receiver, const rtcp::SsrcReport& report);
   bool empty() const { return receipts_.empty(); }
-  /// Returns upstream events with all receipts.
+  /// Removes all receipts and returns them as events for upstream.
   std::vector<EventPtr> Take();
 
  private:
-  // A payloader without some receipts counts their slices as lost, which does no harm.
+  // Further receipts are dropped. The payloader then counts their slices as lost, which does no
+  // harm.
   static constexpr std::size_t kMostReceipts = 16;
   std::vector<GstLidarPacketsReceived> receipts_;
 };

@@ -8,8 +8,8 @@
 namespace lidar::gst {
 namespace {
 
-// A report has 72 bytes, so the rate stays below 10 kbit/s with all headers, whatever the property
-// is.
+// A report has 72 bytes. At this interval, the reports with all their headers need less than 10
+// kbit/s, even if the property sets a shorter one.
 constexpr Duration kMinInterval = std::chrono::milliseconds(100);
 
 rtcp::SenderReport ReportOf(const scream::Statistics& s) {

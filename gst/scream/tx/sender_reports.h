@@ -13,16 +13,16 @@
 
 namespace lidar::gst {
 
-/// Call it with the element's lock.
+/// Call it with the element's lock held.
 class SenderReports {
  public:
-  /// Returns the next report as RTCP if it is due. Call it when media leave: a sender without data
-  /// has nothing to report.
+  /// Returns the next report as RTCP, or nothing if no report is due. Call it only when media
+  /// packets are sent, because a sender without data has nothing to report.
   std::vector<std::uint8_t> Take(Duration interval, const TxStreams& streams,
                                  const scream::Controller& controller, Time now);
 
  private:
-  std::optional<Time> last_;  // of the last report, or of the first media
+  std::optional<Time> last_;  // time of the last report, or of the first media packet
 };
 
 }  // namespace lidar::gst

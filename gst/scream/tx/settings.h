@@ -13,7 +13,7 @@ namespace lidar::gst {
 enum EcnMode { kEcnOff, kEcnEct0, kEcnEct1 };
 GType EcnModeType();
 
-/// The settings of a sink pad. A bitrate of 0 means the element's.
+/// The settings of a sink pad. If a bitrate is 0, the element's bitrate applies.
 struct TxPadSettings {
   gdouble priority = 1;
   guint min_bps = 0;
@@ -43,10 +43,11 @@ struct TxSettings {
 using TxProperties = std::array<Property<TxSettings>, 14>;
 const TxProperties& TxPropertyTable();
 
-/// Applies `tuning`, which may be NULL. Returns the fault, or an empty text.
+/// Applies `tuning`, which may be NULL, to `parameters`. Returns a text that says what is wrong, or
+/// an empty text.
 std::string ReadTuning(const GstStructure* tuning, scream::Parameters* parameters);
 
-/// Returns the controller's parameters. `pure_draft` overrides `tuning`.
+/// Returns the controller's parameters. If `pure_draft` is set, `tuning` is ignored.
 scream::Parameters ToParameters(const TxSettings& settings);
 
 }  // namespace lidar::gst

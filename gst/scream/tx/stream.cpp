@@ -32,7 +32,8 @@ scream::StreamConfig MakeConfig(const TxStream& stream, const TxPadSettings& pad
     needed = stream.bounds->min_bitrate * wire;
     if (stream.bounds->max_bitrate > 0) max = std::min(max, stream.bounds->max_bitrate * wire);
   }
-  // The user's maximum is a promise to the network and takes precedence over the encoder's need.
+  // The user's maximum limits the load on the network, so it takes precedence over what the encoder
+  // needs.
   min = std::min(min, max);
   needed = std::clamp(needed, min, max);
   scream::StreamConfig config;
@@ -41,9 +42,9 @@ scream::StreamConfig MakeConfig(const TxStream& stream, const TxPadSettings& pad
   config.min_bitrate = Bps(min);
   config.start_bitrate = Bps(std::clamp(start, needed, max));
   config.max_bitrate = Bps(max);
-  // The needed bitrate is no minimum: if the path cannot carry what the error bound needs, the
-  // encoder gets a lower target. The encoder can then leave out scans, whereas a higher target
-  // would only lengthen the queue.
+  // The needed bitrate is not a minimum. If the path cannot carry the needed bitrate, the encoder
+  // gets a lower target and can leave out scans. A target above the path's capacity would only
+  // lengthen the queue.
   config.needed_bitrate = Bps(needed);
   return config;
 }

@@ -19,7 +19,7 @@
 
 namespace lidar::gst {
 
-/// A packet, or an event at its place among the packets.
+/// An item of a queue: a packet, or an event that is sent between two packets.
 struct TxItem {
   BufferPtr buffer;
   EventPtr event;
@@ -40,16 +40,18 @@ class OverheadMeter {
 
  private:
   static constexpr double kShareMemoryPerPacket = 1 - 1.0 / 128;
-  // Starts with the share of packets of 1200 bytes.
+  // The initial share is that of RTP packets of 1200 bytes.
   double payload_ = 1188;
   double wire_ = 1228;
 };
 
-/// A flush restarts the running time, but without a preroll the base time stays. Entry times are
-/// shifted until a preroll gives the pipeline a new base time. A pause only moves the base time.
+/// The correction of entry times after a flush. A flush restarts the running time, but the pipeline
+/// keeps its base time unless it prerolls. Without a correction, all entry times would be in the
+/// past. The shift applies until a preroll gives the pipeline a new base time. A pause changes the
+/// base time, too, but the shift remains valid.
 struct EntryShift {
-  bool due = false;    // measure the shift with the next buffer
-  bool moved = false;  // take the base time of the next buffer
+  bool due = false;    // the next buffer measures the shift
+  bool moved = false;  // the next buffer stores the new base time
   GstClockTime base_time = GST_CLOCK_TIME_NONE;
   GstClockTime shift = 0;
 };
@@ -63,10 +65,10 @@ struct TxStream {
   std::optional<GstLidarBitrateBounds> bounds;
   std::optional<guint32> ssrc;         // from the caps, or of the first media packet
   std::optional<guint8> payload_type;  // from the caps, or of the first media packet
-  scream::StreamConfig config;         // as given to the controller
-  double configured_share = 1;         // payload share in `config`
-  GstSegment segment{};                // of the packets that come in
-  GstSegment leaving_segment{};        // of the packets that leave
+  scream::StreamConfig config;         // as last given to the controller
+  double configured_share = 1;         // payload share with which `config` was computed
+  GstSegment segment{};                // of the packets that enter the queue
+  GstSegment leaving_segment{};        // of the packets that leave the queue
   GstClockID entry_wait = nullptr;     // not owned
   EntryShift entry_shift;
   std::optional<bool> live;  // unknown before the first buffer
@@ -75,7 +77,7 @@ struct TxStream {
   bool wants_receipts = false;  // its payloader uses receipts
   bool eos = false;
   bool flushing = false;
-  bool flushes_src = false;  // its flush went downstream
+  bool flushes_src = false;  // its FLUSH_START was sent downstream
   // Work for the reporter's thread:
   bool target_due = false;
   bool key_unit_due = false;
@@ -85,19 +87,20 @@ struct TxStream {
   PacketReceipts receipts;
   StreamCounters counters;
 
-  /// Age of the oldest packet in the queue.
+  /// Returns the age of the oldest packet in the queue, or 0 if there is none.
   Duration HeadAge(Time now) const;
 };
 
 using TxStreams = std::vector<std::unique_ptr<TxStream>>;
 
-/// Present time on the system's clock, as the controller takes it.
+/// Returns the time of `clock` in the type that the controller uses.
 Time TimeOf(GstClock* clock);
-/// Returns the controller's configuration from the pad's settings, else the element's. The
-/// encoder's bounds, with overhead added, limit max_bitrate and set needed_bitrate.
+/// Returns the controller's configuration of `stream`. A bitrate that is 0 in `pad` is taken from
+/// `element`. The encoder's bounds, increased by the overhead of the headers, limit max_bitrate and
+/// set needed_bitrate.
 scream::StreamConfig MakeConfig(const TxStream& stream, const TxPadSettings& pad,
                                 const TxSettings& element);
-/// Converts `wire` to the encoder's bitrate [bit/s].
+/// Converts `wire`, which includes all headers, to the encoder's bitrate [bit/s].
 guint ToEncoder(const TxStream& stream, DataRate wire);
 
 }  // namespace lidar::gst

@@ -4,7 +4,7 @@
 namespace lidar::gst {
 namespace {
 
-/// The merged stream has its own stream id.
+/// Creates a STREAM_START event with a new random stream id.
 EventPtr NewStart() {
   const StringPtr id(g_strdup_printf("screamtx/%08x%08x", g_random_int(), g_random_int()));
   return EventPtr(gst_event_new_stream_start(id.get()));
@@ -12,7 +12,8 @@ EventPtr NewStart() {
 
 }  // namespace
 
-/// Takes the event at the head of the queue. A stream without a start event gets one.
+/// Removes the event at the head of the queue and returns it. If the stream has no STREAM_START
+/// before this event, returns a new STREAM_START instead.
 EventPtr StreamMerger::TakeEvent(TxStream* stream) const {
   const GstEventType type = GST_EVENT_TYPE(stream->queue.front().event.get());
   if (type != GST_EVENT_STREAM_START && type != GST_EVENT_EOS && !sent_start_) return NewStart();
@@ -26,7 +27,7 @@ EventPtr StreamMerger::NextEvent(const Streams& streams) {
   for (const auto& stream : streams) {
     while (!stream->queue.empty() && stream->queue.front().event) {
       EventPtr event = TakeEvent(stream.get());
-      // The end is sent once all streams have ended.
+      // EOS is skipped here. The pacing task sends one EOS when all streams have ended.
       if (GST_EVENT_TYPE(event.get()) == GST_EVENT_EOS) continue;
       const bool merged = streams.size() > 1;
       if (merged && !Suits(*stream, streams, event.get())) continue;
@@ -70,7 +71,8 @@ void StreamMerger::NoteSent(bool merged, EventPtr* event) {
   }
 }
 
-/// Maps the buffer's times to the output's segment, which may be that of a stream that left.
+/// Converts the buffer's times to the segment of the output, which may be the segment of a stream
+/// that was removed.
 BufferPtr StreamMerger::ToOutput(const TxStream& stream, BufferPtr buffer) const {
   const GstSegment& segment = stream.leaving_segment;
   if (segment.format != GST_FORMAT_TIME || gst_segment_is_equal(&segment, &segment_)) return buffer;

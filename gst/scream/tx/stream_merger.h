@@ -11,23 +11,25 @@
 
 namespace lidar::gst {
 
-/// A single stream keeps its events. With several streams the src pad has its own events, which fit
-/// all of them. Only the pacing task uses it, with the element's lock.
+/// If there is a single stream, its events are sent unchanged. If there are several streams, the
+/// src pad has its own events, which are valid for all streams. Only the pacing task uses the
+/// merger, with the element's lock held.
 class StreamMerger {
  public:
   using Streams = std::vector<std::unique_ptr<TxStream>>;
 
   StreamMerger() { gst_segment_init(&segment_, GST_FORMAT_UNDEFINED); }
-  /// Returns the next event whose place is before all queued packets of its stream, or NULL.
+  /// Returns the next event that is ahead of all queued packets of its stream, or NULL.
   EventPtr NextEvent(const Streams& streams);
-  /// Call it after the end, with empty queues: the next events begin a new stream.
+  /// Call it after the end was sent, with empty queues. The next events then begin a new stream.
   void BeginAnew() {
     sent_start_ = merged_caps_ = false;
     segment_due_ = true;
   }
-  /// Sends the next segment: a flush has removed the last one downstream.
+  /// Call it after a flush that went downstream and removed the segment there. The next segment is
+  /// then sent.
   void ForgetSegment() { segment_due_ = true; }
-  /// Returns `buffer` with its times in the src pad's segment.
+  /// Returns `buffer` with its times converted to the src pad's segment.
   BufferPtr ToOutput(const TxStream& stream, BufferPtr buffer) const;
 
  private:

@@ -14,7 +14,8 @@ using namespace std::chrono_literals;
 
 constexpr Duration kKeyUnitInterval = 500ms;
 
-/// Key frames are large and cause congestion if they are requested too often.
+/// Returns true if a key unit is due and the last request is long enough ago. Key frames are large
+/// and would cause congestion if they were requested too often.
 bool MayAskForKeyUnit(const TxStream& stream, Time now) {
   return stream.key_unit_due &&
          (!stream.last_key_unit || now - *stream.last_key_unit >= kKeyUnitInterval);

@@ -11,21 +11,22 @@
 
 namespace lidar::gst {
 
-/// An event that leaves upstream by a sink pad.
+/// An event that screamtx sends upstream from a sink pad.
 struct PadEvent {
   PadPtr pad;
   EventPtr event;
   bool is_target = false;
 };
 
-/// Compares `stream` with the last events to its encoder. Returns true if an event is due.
+/// Compares the state of `stream` with the events that were last sent to its encoder. Returns true
+/// if an event is due.
 bool EvaluateTargets(TxStream& stream, const scream::Controller& controller, bool key_unit_on_loss,
                      Time now);
 bool TargetsAreDue(const TxStream& stream, Time now);
-/// Appends the events that are due.
+/// Appends the events that are due to `events`.
 void TakeTargets(TxStream& stream, const scream::Controller& controller, Time now,
                  std::vector<PadEvent>* events);
-/// Returns the first target of `stream`, or null in later calls.
+/// Returns an event with the first target of `stream`. Later calls return null.
 EventPtr FirstTarget(TxStream& stream, const scream::Controller& controller, Time now);
 
 }  // namespace lidar::gst

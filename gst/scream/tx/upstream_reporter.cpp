@@ -15,7 +15,8 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr Duration kPulse = 200ms;  // interval of target-bitrate events
-// Least change of the payload's share that changes the encoder's bounds.
+// If the payload's share changes by more than this fraction, the encoder's bounds are converted
+// anew.
 constexpr double kShareThreshold = 0.02;
 
 bool ShareHasChanged(const TxStream& stream) {
@@ -78,7 +79,7 @@ bool UpstreamReporter::HasWork() const {
                      [now](const auto& stream) { return TargetsAreDue(*stream, now); });
 }
 
-/// Takes the due events and messages out of the state.
+/// Removes the events and messages that are due from the state, and returns them.
 UpstreamReporter::Work UpstreamReporter::TakeWork(Time now) {
   TxState& s = state();
   Work work;
@@ -97,7 +98,8 @@ UpstreamReporter::Work UpstreamReporter::TakeWork(Time now) {
 void UpstreamReporter::Run() {
   TxLock lock(state().mutex);
   for (;;) {
-    // A key unit that waits for its interval is checked again after kPulse.
+    // The wait ends after kPulse at the latest. A request for a key unit that was too early is then
+    // checked again.
     due_.wait_for(lock, kPulse, [&] { return HasWork(); });
     if (stop_) return;
     Work work = TakeWork(TxNow(state()));

@@ -14,21 +14,22 @@ namespace lidar::gst {
 
 struct TxState;
 
-/// Call Evaluate() after each change of the controller's state; it finds the due events, which a
-/// thread sends. Call Start() and Stop() without the element's lock, other methods with it. The
-/// thread sends without it.
+/// Call Evaluate() after each change of the controller's state. Evaluate() finds the events that
+/// are due, and the reporter's thread sends them without the element's lock. Call Start() and
+/// Stop() without the element's lock, and the other methods with it.
 class UpstreamReporter {
  public:
   explicit UpstreamReporter(GstLidarScreamTx* self) : self_(self) {}
 
-  /// Returns false, after an element error, if the system cannot start the thread.
+  /// Starts the thread. If the system cannot start a thread, posts an error message and returns
+  /// false.
   bool Start();
   void Stop();
 
   Notices& notices() { return notices_; }
-  /// Finds the due events and messages.
+  /// Finds the events and messages that are due.
   void Evaluate(Time now);
-  /// Returns the latest time of the next call of Evaluate().
+  /// Returns the latest time at which Evaluate() must be called again.
   Time NextLook(Time now) const;
 
  private:
