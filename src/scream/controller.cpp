@@ -13,23 +13,24 @@ namespace lidar::scream {
 namespace {
 
 constexpr Duration kHousekeeping = 50ms;
-/// If the caller is late by this much, it did not run, or its clock was set.
+/// A caller that is late by this much was stopped, or its clock was set.
 constexpr Duration kStandstill = 500ms;
 constexpr double kDriftRateScale = 0.5;
-/// For this time after a sign of congestion, the window about matches the link's capacity.
+/// The window about matches the link's capacity for this time after a sign of congestion.
 constexpr Duration kCongestedLately = 300ms;
 /// A longer silence of the receiver is not a gap of the link.
 constexpr Duration kLongestSilence = 2s;
-/// A report that is late by more than this shows a stalled link.
+/// A report that is late by more than this shows that the link is stalled.
 constexpr Duration kOverdue = 5ms;
 
 }  // namespace
 
-/// Returns the steady time. After a pause of the caller, feedback on the packets in flight does not
-/// count, because the path did not cause their delay.
+/// Returns the steady time. After a pause of the caller, gives up the packets in flight, because
+/// the pause, and not the path, has delayed their feedback.
 Time Controller::Advance(Time caller_now) {
   const Time now = clock_.From(caller_now);
-  // The caller must call often while data are in flight.
+  // While packets are in flight, the caller must call at each NextTimer(), so a long silence is a
+  // pause.
   const Duration silence = now - now_;
   now_ = std::max(now_, now);
   if (p_.extensions.evidence && silence > kHousekeeping + kStandstill &&
@@ -111,7 +112,7 @@ void Controller::TakeOutageRestart(Time now) {
   if (!restart) return;
   window_.Restart(std::max(window_.ref_wnd(), *restart));
   // Packets that the outage delayed arrive during the next round trip. They do not count, because
-  // the restart already answered their marks.
+  // the restart was already the reaction to the outage.
   path_.evidence().BeginAt(now + path_.rtt().smoothed());
   fast_increase_.Restart();
 }
@@ -168,7 +169,7 @@ bool Controller::RespondToDrop(Time now) {
 
 void Controller::RespondToSignals(Time now, const AckSummary& acks) {
   const CongestionSignals signals = Signals(now, acks);
-  // Fast growth waits until the backlog of recent congestion has left the streams' queues.
+  // Fast growth waits until the backlog from recent congestion has left the streams' queues.
   if (streams_.media_qdelay(now) <= streams_.frame_period() || !CongestedLately())
     fast_increase_.Update(now, path_.Round(streams_.frame_period()));
   const RateReason reason = window_.Update(now, signals);
@@ -242,7 +243,7 @@ void Controller::UpdatePacer(Time now) {
 }
 
 DataRate Controller::WindowRate(Time now, double queue_compensation) const {
-  // The round trip during an outage is at least the time without feedback.
+  // During an outage, the round trip counts as at least the time without feedback.
   const Duration s_rtt = std::max(path_.rtt().smoothed(), outage_.Silence(now));
   return window_.TargetBitrate(s_rtt, queue_compensation);
 }
@@ -254,7 +255,8 @@ DataRate Controller::WindowTarget(Time now) const {
 }
 
 /// Returns the target for encoders. While the link is stalled, the target is below the window's
-/// rate, because new data would wait. It is not below the encoders' need, except in a long silence.
+/// rate, because new data would have to wait. The target is not below what the encoders need,
+/// unless the receiver has been silent for long.
 DataRate Controller::AskedTarget(Time now, DataRate allowed) const {
   DataRate asked = allowed;
   if (p_.extensions.gaps && started_ && Stalled(now)) asked = asked * p_.stall_share;
@@ -275,31 +277,33 @@ std::optional<SendDecision> Controller::NextSend(Time caller_now) const {
                       path_.ecn().codepoint()};
 }
 
-/// Returns how late a report may be on a healthy link, which may have lost one report.
+/// Returns how late a report may be on a healthy link. Such a link may have lost one report.
 Duration Controller::Lateness() const { return 2 * path_.report_gap() + kOverdue; }
 
-/// Returns true if the oldest packet in flight waits longer than a round trip and late reports
-/// explain.
+/// Returns true if the oldest packet in flight has waited longer than a round trip and a late
+/// report can explain.
 bool Controller::Overdue(Time now) const {
   const auto oldest = history_.oldest_in_flight();
   return oldest && now - *oldest > path_.rtt().smoothed() + Lateness();
 }
 
-/// Returns true in a gap and at its start, when packets are overdue and no acknowledgement comes.
+/// Returns true during a gap, and at its start, when packets are overdue and no acknowledgements
+/// arrive.
 bool Controller::Stalled(Time now) const {
   return gap_recovery_.in_gap() || (Overdue(now) && outage_.Quiet(now) > Lateness());
 }
 
-/// Returns how much longer packets behind a gap wait. It is the greatest amount in flight of the
-/// last two round trips, divided by the rate before the gap.
+/// Returns how much longer packets wait because of a gap. This is the greatest number of bytes in
+/// flight during the last two round trips, divided by the rate before the gap.
 Duration Controller::WaitBehindGap(Time now) const {
   const auto rate = gap_recovery_.rate_before();
   if (!rate || !Overdue(now)) return Duration{0};
   return path_.max_in_flight().lately() / *rate;
 }
 
-/// Returns true if the stream must wait, because too many packets are unsettled or the link is
-/// stalled. A new frame then stays in the stream's queue, where it can still be dropped.
+/// Returns true if the stream must not send, because too many packets are unsettled or the link is
+/// stalled. While the link is stalled, a new frame stays in the stream's queue, where it can still
+/// be dropped.
 bool Controller::Holds(const Stream& stream, Time now) const {
   const bool stalled = p_.extensions.gaps && started_ && Overdue(now) && Stalled(now);
   return history_.full() || (stalled && stream.at_start());
@@ -309,8 +313,8 @@ bool Controller::CongestedLately() const {
   return now_ - window_.last_congestion_detected_time() < kCongestedLately;
 }
 
-/// Returns the highest rate at which a stream's queue can drain. The rate is infinite in a gap and
-/// without recent congestion, because the window then does not show the link's capacity.
+/// Returns the highest rate at which the stream's queue can drain. The rate is infinite in a gap,
+/// or if there was no recent congestion, because the window then does not show the link's capacity.
 DataRate Controller::QueueRate(const Stream& stream) const {
   if (gap_recovery_.in_gap() || outage_.active() || !CongestedLately()) return DataRate::Infinite();
   const DataRate known =

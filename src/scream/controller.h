@@ -29,9 +29,10 @@ struct SendDecision {
 
 /// Congestion control of one 5-tuple with any number of streams, each with any number of SSRCs.
 ///
-/// **The RTP queue** of each stream is a FIFO of the caller. The controller mirrors it by sizes:
-/// OnQueued() appends to the mirror, OnSent() and OnDropped() take from its head. The caller does
-/// the same with its packets, in the same order, and sends none in another way.
+/// **The RTP queue** of each stream is a FIFO that the caller keeps. The controller keeps a mirror
+/// of it, which has only the sizes of the packets: OnQueued() appends to the mirror, and OnSent()
+/// and OnDropped() remove from its head. The caller must change its FIFO in the same way and in the
+/// same order, and must not send any other packets.
 ///
 ///     controller.OnQueued(now, stream, {ssrc, size, marker, rtp_timestamp});
 ///     for (;;) {
@@ -44,57 +45,63 @@ struct SendDecision {
 ///       send; }
 ///     }
 ///
-/// Take the time of OnSent() *before* the send call: a sender preempted within it would otherwise
-/// see negative queue delay. After OnFeedback(), OnTimer() and OnQueued() read target_bitrate()
-/// again. Times must not go backwards by more than reordering between threads does. A time before
-/// the latest one counts as the latest one.
+/// Read the clock for OnSent() *before* the call that sends the packet. If the thread were
+/// preempted in that call, a later time would make the queue delay negative. After OnFeedback(),
+/// OnTimer() and OnQueued(), read target_bitrate() again. Times may go backwards only by a little,
+/// as they do when several threads call in turn. A time before the latest time counts as the latest
+/// time.
 ///
-/// Not thread-safe, no callbacks; a caller with a lock holds it around each call.
+/// The controller is not thread-safe: a caller with several threads holds a lock during each call.
+/// There are no callbacks.
 ///
-/// The controller only calls its parts in order: `model/` measures the path, `response/` decides
-/// what follows from the measurements, and `streams` shares the rate.
+/// The controller itself only calls its parts in order: `model/` measures the path, `response/`
+/// decides how to react to the measurements, and `streams` shares the rate among the streams.
 class Controller {
  public:
   explicit Controller(const Parameters& parameters) : p_(parameters) {}
   Controller(const Controller&) = delete;
   Controller& operator=(const Controller&) = delete;
 
-  // Streams. All may be called at any time.
+  // Streams. The methods below may be called at any time.
   StreamId AddStream(const StreamConfig& config);
   void ConfigureStream(StreamId stream, const StreamConfig& config);
-  /// Forgets the stream's queued packets; its packets in flight still count.
+  /// Removes the stream and its queued packets. Its packets in flight still count.
   void RemoveStream(StreamId stream) { streams_.Remove(stream); }
 
   // Events:
   void OnQueued(Time now, StreamId stream, const QueuedPacket& packet);
   void OnSent(Time now, StreamId stream, const SentPacket& packet);
-  /// The caller dropped the first `packets` of the stream's queue.
+  /// Call it after dropping the first `packets` packets of the stream's queue.
   void OnDropped(Time now, StreamId stream, std::size_t packets);
-  /// The packet at the head of the queue is not sent, because another path delivered it.
+  /// Call it instead of OnSent() if the packet at the head of the queue is not sent, because
+  /// another path has delivered it.
   void OnUnneeded(Time now, StreamId stream);
-  /// Takes parsed feedback of the peer, whose source address the caller has checked.
+  /// Handles a parsed report of the peer. The caller must have checked the report's source address.
   FeedbackResult OnFeedback(Time now, const rtcp::CongestionFeedback& feedback);
   /// Call it at NextTimer() or later; more calls do no harm.
   void OnTimer(Time now);
-  /// The peer's address changed. Forgets base delay and RTT, probes ECN anew, and restarts from the
-  /// streams' start bitrates.
+  /// Call it when the peer's address has changed. Forgets the base delay and the round-trip time,
+  /// tests ECN anew, and restarts from the streams' start bitrates.
   void OnRouteChange(Time now);
 
   // Decisions:
-  // Returns the stream that may send next, and the time. The time is in the future if the pacer or
-  // a closed window delays the packet. Returns nothing while all queues are empty.
+  // Returns the stream that may send next, and the time at which it may send. The time is in the
+  // future if the pacer or a closed window delays the packet. Returns nothing if all queues are
+  // empty.
   std::optional<SendDecision> NextSend(Time now) const;
-  /// Returns how many packets at the head of the queue are too late. An access unit, or its group,
-  /// is late as a whole if its last packet would leave later than `max_queue_delay` after the
-  /// middle of its capture. The limit is five times as long if the group has begun to leave. Late
-  /// units behind a late unit count, too. The rest of a unit that has begun is late when its first
-  /// packet has waited five times `max_queue_delay`. While packets in flight are overdue, the
-  /// limits are longer by the time that the bytes in flight take at the rate before the gap, up to
-  /// half of `max_queue_delay`.
+  /// Returns how many packets at the head of the queue are too late. An access unit, or a group of
+  /// access units, is late as a whole if its last packet would be sent later than `max_queue_delay`
+  /// after the middle of its capture. This limit is five times as long if a part of the group has
+  /// been sent. If a unit is late, late units that follow it count, too. If a part of a unit has
+  /// been sent, its rest is late when the first packet of the rest has waited five times
+  /// `max_queue_delay`. While packets in flight are overdue, the limits are extended by the time
+  /// that the bytes in flight take at the rate before the gap, but at most by half of
+  /// `max_queue_delay`.
   std::size_t LatePackets(Time now, StreamId stream) const;
   /// Returns when to call OnTimer() next.
   Time NextTimer() const;
-  /// Bitrates that one stream and all streams may send, with IP, UDP and RTP headers.
+  /// Returns the bitrate that one stream, or all streams together, may send, including the headers
+  /// of IP, UDP and RTP.
   DataRate target_bitrate(StreamId stream) const;
   DataRate target_bitrate() const { return streams_.target_bitrate(); }
   /// Returns the stream that queued or sent `ssrc`, for events that name an SSRC.
@@ -131,7 +138,7 @@ class Controller {
   bool Holds(const Stream& stream, Time now) const;
 
   const Parameters p_;
-  SteadyTime clock_;  // the caller's clock; all times inside are steady
+  SteadyTime clock_;  // converts the caller's times to steady times, which all members use
   Time now_{};
   Streams streams_{p_};
   SentHistory history_;

@@ -13,8 +13,8 @@ class Pacer {
  public:
   explicit Pacer(const Parameters& parameters) : p_(parameters) {}
 
-  /// `headroom` is PACKET_PACING_HEADROOM or its extension. Pacing is relaxed near the maximum
-  /// bitrate, up to `relaxed_max`.
+  /// `headroom` is PACKET_PACING_HEADROOM, or the value by which an extension replaces it. Near the
+  /// maximum bitrate, the pace is relaxed up to `relaxed_max`.
   void Update(DataRate target_bitrate, DataRate target_bitrate_max, double headroom,
               DataRate relaxed_max = DataRate::Infinite()) {
     const DataRate strict = std::max(p_.rate_pace_min, target_bitrate) * headroom;
@@ -23,10 +23,11 @@ class Pacer {
     pace_bitrate_ = strict / std::clamp(1 - relaxed, 1 / p_.max_relaxed_pacing_factor, 1.0);
     pace_bitrate_ = std::min(pace_bitrate_, std::max(strict, relaxed_max));
   }
-  /// Makes gaps between packets longer and shorter by this, to show other flows' packets.
+  /// Makes the gaps between packets longer and shorter by `ripple`, so that the packets of other
+  /// flows can be detected.
   void set_ripple(Duration ripple) { ripple_ = ripple; }
-  /// Packets leave so that a link of rate `link` would queue them for at most `longest`. The rest
-  /// of a larger frame leaves at `link`.
+  /// Paces packets so that a link with the rate `link` would queue them for at most `longest`. If a
+  /// frame is too large for this, its rest is sent at the rate `link`.
   void LimitQueue(DataRate link, Duration longest) {
     link_ = link;
     longest_queue_ = longest;
@@ -35,11 +36,14 @@ class Pacer {
     pace_bitrate_ = std::max(pace_bitrate_, rate);
     link_ = std::max(link_, rate);
   }
-  /// Call it when a packet enters an empty queue. The idle time before it gives no credit.
+  /// Call it when a packet enters an empty queue. The idle time before this packet gives no credit
+  /// for a burst.
   void OnIdleEnd(Time now) { next_ = std::max(next_, now); }
-  /// Call it after a gap. The next packet is due at once, despite the low rate in the gap.
+  /// Call it after a gap. The next packet is then due at once, although the rate in the gap was
+  /// low.
   void OnGapEnd(Time now) { next_ = std::min(next_, now); }
-  /// Times the next packet from the due time of this one, not from a late wake-up, within a bound.
+  /// Sets the time of the next packet, counted from the time at which this packet was due. If this
+  /// packet was sent late, at most `pacing_catch_up` of the delay is caught up.
   void OnSent(Time now, DataSize size) {
     const Duration gap = size / pace_bitrate_;
     next_ = std::max(next_, now - p_.pacing_catch_up) + gap;
@@ -54,7 +58,8 @@ class Pacer {
   DataRate pace_bitrate() const { return pace_bitrate_; }
 
  private:
-  /// Returns true for one gap of each pair, in an order without a period (Thue and Morse).
+  /// Returns true for one gap of each pair. The order has no period (it is the sequence of Thue and
+  /// Morse).
   bool LongerGap() {
     bool odd = false;
     for (std::uint32_t bits = gaps_++; bits != 0; bits &= bits - 1) odd = !odd;

@@ -8,21 +8,23 @@
 namespace lidar::scream {
 using namespace std::chrono_literals;
 
-/// The parts beyond the draft, which `docs/scream.md` explains. All off is the pure draft.
+/// The parts beyond the draft, which `docs/scream.md` explains. If all are off, the controller
+/// follows the pure draft.
 struct Extensions {
-  /// Limits window and frames to the measured capacity, and reacts to its fall at once.
+  /// Limits the window and the frames to the measured capacity, and reacts at once when the
+  /// capacity falls.
   bool capacity = true;
-  /// Reacts to congestion once, ignores isolated losses, and handles set clocks and stalled
-  /// callers.
+  /// Reacts to each congestion only once, ignores isolated losses, and handles clocks that are set
+  /// and callers that stall.
   bool evidence = true;
-  /// Waits through a gap of the link, and continues with the window from before it.
+  /// Waits during a gap of the link, and continues with the window from before the gap.
   bool gaps = true;
   /// Makes the window as bold as those of other flows.
   bool company = true;
 };
 
 struct Parameters {
-  /// Returns exactly the draft's constants, without its optional parts and extensions.
+  /// Returns exactly the draft's constants. The draft's optional parts and the extensions are off.
   static Parameters Draft() {
     Parameters p;
     p.reduce_jitter = p.clock_drift = p.link_layer_loss = p.undershoot_remedy = false;
@@ -48,7 +50,8 @@ struct Parameters {
   double l4s_avg_g = 1.0 / 16;
   double qdelay_avg_g = 1.0 / 4;
   double ref_wnd_i_update_max_hold_rtts = 50;
-  /// ref_wnd_i moves if ref_wnd has grown by this factor since the last reduction (draft: 1.05).
+  /// ref_wnd_i changes only if ref_wnd has grown by this factor since the last reduction (1.05 in
+  /// the draft).
   double ref_wnd_i_update_growth = 1;
 
   // Optional, jitter scale:
@@ -85,80 +88,91 @@ struct Parameters {
   double acked_bitrate_margin = 0.8;
   double backoff_scale_low_target_rate = 0.25;
 
-  // Extensions: fast growth, beyond the draft's, adds at most this part of the acknowledged bytes.
+  // Extensions: fast growth, which the draft does not have, adds at most this fraction of the
+  // acknowledged bytes to the window.
   double fast_increase_max = 0.5;
-  /// Step by which fast growth increases with each round without congestion.
+  /// The step by which fast growth increases with each round without congestion.
   double fast_increase_step = 0.03;
-  /// fast_increase_step if no marks give an early warning.
+  /// The value of fast_increase_step if no marks give an early warning.
   double fast_increase_step_unmarked = 0.02;
-  /// Rounds without congestion before fast growth begins. A queue of busy_qdelay stops it.
+  /// The number of rounds without congestion before fast growth begins. A queue of busy_qdelay
+  /// stops fast growth.
   int fast_increase_rounds = 3;
   /// Slope of fast growth above the inflection point (8 in the draft).
   double fast_increase_slope = 3;
-  /// The capacity has fallen if the target is above this part of its measured value.
+  /// The capacity counts as fallen if the target is above this fraction of the measured capacity.
   double drop_threshold = 0.9;
-  /// drop_threshold for an unsure measurement: shorter than both a frame period and VIRTUAL_RTT,
-  /// with fewer than half of the packets marked, or shortly after another reaction.
+  /// The value of drop_threshold if the measurement is unsure: it is shorter than both a frame
+  /// period and VIRTUAL_RTT, fewer than half of its packets are marked, or the last reaction is
+  /// recent.
   double drop_threshold_unsure = 1.5;
-  /// A fall on a path with marks must also lengthen the queue delay by this many packet gaps.
+  /// A fall of the capacity on a path with marks must also lengthen the queue delay by this many
+  /// packet gaps.
   double drop_growth = 3;
-  /// Queue delay that shows a busy link. Without marks it is a part of qdelay_target.
+  /// The queue delay that shows a busy link. Without marks, it is busy_qdelay_unmarked times
+  /// qdelay_target_lo.
   Duration busy_qdelay = 5ms;
   double busy_qdelay_unmarked = 0.45;
-  /// Limit of bytes in flight relative to ref_wnd while packets keep coming out of a queue.
+  /// The limit of bytes in flight, relative to ref_wnd, while the latest packets all come out of a
+  /// queue.
   double bounded_overhead = 1.0;
-  /// The same limit on a path with marks, without such a queue.
+  /// The limit of bytes in flight, relative to ref_wnd, on a path with marks but without a queue.
   double open_overhead = 1.2;
-  /// Tolerated loss rate if the path carries ECT(1).
+  /// The loss rate that is tolerated if the path carries ECT(1).
   double isolated_loss_threshold = 0.05;
-  /// Losses show congestion if the queue delays packets by more than this.
+  /// Losses show congestion if the queue delay is longer than this.
   Duration isolated_loss_qdelay = 6ms;
-  /// Gain of l4s_alpha's filter. The gain is 1/8 while alpha rises after two rounds in a row with a
-  /// marked part of even_alpha_max or more, or after one such round of at least long_frame_period.
+  /// The gain of the filter for l4s_alpha. The gain is 1/8 if alpha rises after two rounds in a row
+  /// whose marked fraction is even_alpha_max or more. One round is enough if it is
+  /// long_frame_period or longer.
   double even_alpha_g = 1.0 / 32;
   double even_alpha_max = 0.5;
-  /// Pacing: a frame has left this long before its period ends. On a full link a queue of this
-  /// length comes and goes with each frame.
+  /// Pacing: the sending of a frame ends this long before its period ends. On a full link, each
+  /// frame causes a queue of this length, which then drains.
   Duration pacing_reserve = 4ms;
-  /// If marks work, the reserve is this part of the queue delay at which marking starts, but at
+  /// If marks work, the reserve is this fraction of the queue delay at which marking starts, but at
   /// least shortest_pacing_reserve and at most pacing_reserve.
   double onset_reserve = 0.8;
   Duration shortest_pacing_reserve = 700us;
-  /// min_pacing_reserve and max_pacing_reserve are fractions of a frame's period. Below this
-  /// period, the least reserve is smaller in proportion.
+  /// The reserve is between min_pacing_reserve and max_pacing_reserve, as fractions of a frame's
+  /// period. If the period is shorter than long_frame_period, the lower limit is reduced in
+  /// proportion.
   Duration long_frame_period = 50ms;
   double min_pacing_reserve = 0.18;
   double max_pacing_reserve = 0.35;
 
-  /// Company: growth near the inflection point, in MSS a round trip, for a flow with less than its
-  /// share and without marks. The value is a segment of 1500 bytes.
+  /// Company: the growth near the inflection point, in MSS per round trip, for a flow that has less
+  /// than its share and gets no marks. The value corresponds to a segment of 1500 bytes.
   double classic_growth = 1.5;
-  /// The same growth if marking starts early.
+  /// The growth near the inflection point if the bottleneck starts to mark early.
   double early_growth = 0.45;
-  /// Part of the draft's reaction to marks, for a flow with less than its share or if marking
-  /// starts early.
+  /// The fraction of the draft's reaction to marks, for a flow that has less than its share, or if
+  /// the bottleneck starts to mark early.
   double prague_backoff = 0.1;
-  /// Packets leave by this much sooner or later than at even intervals, so that arrivals show other
-  /// flows' packets.
+  /// The time by which packets are sent sooner or later than at even intervals, so that their
+  /// arrivals show the packets of other flows.
   Duration pacing_ripple = 300us;
-  /// Part of fast growth that is left if losses occur at a full queue, which other flows may also
-  /// fill.
+  /// The fraction of fast growth that remains if losses occur at a full queue, which other flows
+  /// may also fill.
   double fast_increase_beside = 0.2;
-  /// Target in a gap, relative to the window's rate: data queued in a gap may be late.
+  /// The target during a gap, relative to the rate of the window. It is lower, because data that
+  /// are queued during a gap may be late.
   double stall_share = 0.6;
-  /// Time in which a lower target removes a backlog.
+  /// The time in which a lowered target removes a backlog.
   Duration backlog_drain = 200ms;
-  /// Longest part of a late wake-up that is caught up. The draft's pacing has no such term.
+  /// The longest delay of a packet that the pacer catches up. The draft's pacing has no such term.
   Duration pacing_catch_up = 4ms;
 
-  /// Limit for all streams together; minimum bitrates take precedence.
+  /// The limit for the bitrate of all streams together. Minimum bitrates take precedence over this
+  /// limit.
   DataRate max_total_bitrate = DataRate::Infinite();
   /// Age at which packets in the sender's queue are late (see Controller::LatePackets()).
   Duration max_queue_delay = 200ms;
-  /// Packets are dropped at once if they would be late even on a link this many times as fast.
+  /// Packets are dropped at once if they would be late even on a link that is faster by this
+  /// factor.
   double link_may_be_faster = 1.5;
-  /// Longest interval of a healthy receiver's reports. Above 0 the receiver reports at the end of
-  /// frames.
+  /// The longest interval between the reports of a healthy receiver. If it is above 0, the receiver
+  /// reports at the end of frames.
   Duration feedback_interval{0};
 
   Extensions extensions;

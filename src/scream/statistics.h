@@ -15,8 +15,8 @@ enum class EcnState {
   kOff,       ///< not requested
   kTesting,   ///< sent, result unknown
   kCapable,   ///< arrives as sent, or CE
-  kBleached,  ///< arrives as Not-ECT: fallen back to Not-ECT
-  kSilent,    ///< not acknowledged, though Not-ECT is: fallen back to Not-ECT
+  kBleached,  ///< arrives as Not-ECT; the sender has fallen back to Not-ECT
+  kSilent,    ///< not acknowledged, unlike Not-ECT, to which the sender has fallen back
 };
 inline const char* ToString(EcnState state) {
   constexpr const char* kNames[] = {"off", "testing", "capable", "bleached", "silent"};
@@ -50,8 +50,8 @@ struct Statistics {
   DataRate pace_bitrate;
   DataRate sent_bitrate;
   DataRate acked_bitrate;
-  /// Capacity of the link, from the spacing of packets that it held back and from the acknowledged
-  /// rate.
+  /// The capacity of the link, estimated from the spacing of packets that waited in its queue and
+  /// from the acknowledged rate.
   DataRate estimated_capacity;
   // Sender's queue:
   DataSize queued;
@@ -60,7 +60,7 @@ struct Statistics {
   std::uint64_t packets_sent = 0;
   std::uint64_t packets_acked = 0;
   std::uint64_t packets_ce = 0;
-  std::uint64_t packets_lost = 0;     ///< declared lost, even if they came later
+  std::uint64_t packets_lost = 0;     ///< declared lost, even if they arrived later
   std::uint64_t packets_late = 0;     ///< declared lost, then acknowledged
   std::uint64_t packets_dropped = 0;  ///< dropped from the sender's queue
   DataSize bytes_sent;

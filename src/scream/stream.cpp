@@ -8,18 +8,19 @@ namespace {
 
 constexpr double kMaxRateAdjustFactor = 0.5;
 constexpr double kMaxFrameSizeDev = 0.2;
-/// A smaller rate_adjust_factor counts as none.
+/// A rate_adjust_factor below this counts as no adjustment.
 constexpr double kNoAdjustment = 0.05;
 constexpr double kFramePeriodGain = 0.1;
-/// Longer gaps are pauses, not frame periods.
+/// A longer time between frames is a pause, and not a frame period.
 constexpr Duration kMaxFramePeriod = 2s;
 constexpr Duration kMinFramePeriod = 1ms;
 constexpr Duration kLikelyFramePeriod = 200ms;
-/// Separates video from scans: the value is between the period of film, 42 ms, and that of 20 Hz.
+/// Distinguishes video from scans. The value is between the period of film, 42 ms, and the period
+/// of scans at 20 Hz, 50 ms.
 constexpr Duration kScanPeriod = 45ms;
-/// The rest of a group that has begun to leave may wait this many times max_queue_delay.
+/// If a part of a group has been sent, the rest may wait this many times max_queue_delay.
 constexpr int kBegunStay = 5;
-/// A stream without packets for this time leaves its share to others.
+/// A stream that has no packets for this time leaves its share to other streams.
 constexpr Duration kInactive = 1s;
 
 }  // namespace
@@ -64,7 +65,7 @@ void Stream::OnFrame(Time now) {
   const double error = Seconds(media_qdelay(now) - frame_period_ / 4) / Seconds(frame_period_);
   rate_adjust_factor_ =
       std::clamp(rate_adjust_factor_ + error * p_.rate_adjust_gain, 0.0, kMaxRateAdjustFactor);
-  // A whole scan is a backlog by itself.
+  // This does not apply to whole scans, because each of them is a backlog by itself.
   if (sudden_backlog_ && !sends_scans() && error < 0) {
     rate_adjust_factor_ /= 2;
     sudden_backlog_ = rate_adjust_factor_ > kNoAdjustment;
@@ -121,15 +122,17 @@ std::size_t Stream::LatePackets(Time now, DataRate rate) const {
   return static_cast<std::size_t>(unit - queue_.begin());
 }
 
-/// Returns how many packets of a frame that has begun to leave are stuck. Half a frame is useless,
-/// so the rest is sent unless its first packet has waited kBegunStay * max_queue_delay.
+/// Returns how many packets of a frame are stuck after a part of the frame was sent. The rest is
+/// sent, because half a frame is useless, unless its first packet has waited kBegunStay *
+/// max_queue_delay.
 std::size_t Stream::StuckPackets(Time now) const {
   const Duration age = now - queue_.front().queued;
   if (age < kBegunStay * p_.max_queue_delay) return 0;
   const auto next =
       std::find_if(queue_.begin(), queue_.end(), [](const Queued& q) { return q.starts_frame; });
   const auto rest = static_cast<std::size_t>(next - queue_.begin());
-  // Keeps the frame's last packet: a receiver that reports at frame ends waits for it.
+  // The last packet of the frame is kept, because a receiver that reports at the end of frames
+  // waits for it.
   const bool keeps_last =
       p_.feedback_interval > Duration{0} && age < 2 * kBegunStay * p_.max_queue_delay;
   return keeps_last ? rest - 1 : rest;
@@ -141,7 +144,8 @@ Stream::Queue::const_iterator Stream::UnitEnd(Queue::const_iterator unit) const 
   });
 }
 
-/// Assumes that a group grows to the size and the time span of the previous group.
+/// Returns true if the access unit from `unit` to `next` would be late at `rate`. Assumes that a
+/// group grows to the size and the time span of the previous group.
 bool Stream::Late(Time now, DataRate rate, Queue::const_iterator unit,
                   Queue::const_iterator next) const {
   DataSize size;

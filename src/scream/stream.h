@@ -22,7 +22,8 @@ class Stream {
   /// Removes the packet at the head of the queue.
   void OnSent(Time now, std::uint32_t ssrc, DataSize size);
   void OnDropped(Time now, std::size_t packets);
-  /// Another path delivered the packet at the head. The rest of its group is still useful.
+  /// Removes the packet at the head of the queue, because another path has delivered it. The rest
+  /// of the packet's group is still useful.
   void OnUnneeded(Time now);
   /// Returns how many packets at the head are late if the queue drains at `rate`; see
   /// Controller::LatePackets().
@@ -30,26 +31,27 @@ class Stream {
 
   bool empty() const { return queue_.empty(); }
   DataSize head_size() const { return queue_.front().size; }
-  /// Returns true if no packet of the first access unit, or of its group, has left.
+  /// Returns true if no packet of the first access unit in the queue, or of its group, has been
+  /// sent.
   bool at_start() const { return queue_.front().starts_frame && !Begun(queue_.front()); }
   DataSize queued() const { return queued_; }
-  /// Queued bytes beyond those that the target carries until the next frame. Unless frames are
-  /// whole scans, the next frame counts as a full period away.
+  /// Returns the queued bytes that exceed what the target carries until the next frame. Unless
+  /// frames are whole scans, the next frame counts as a full period away.
   DataSize backlog(Time now) const;
-  /// Reduction of the target that removes the backlog within backlog_drain, or for whole scans
-  /// within a period.
+  /// Returns the reduction of the target that removes the backlog within backlog_drain or, if
+  /// frames are whole scans, within a frame period.
   DataRate backlog_rate(Time now) const;
-  /// Age of the oldest packet.
+  /// Returns the age of the oldest packet in the queue.
   Duration media_qdelay(Time now) const;
   bool Owns(std::uint32_t ssrc) const { return ssrcs_.count(ssrc) > 0; }
 
   const StreamConfig& config() const { return config_; }
   double queue_compensation() const { return rate_adjust_factor_ + frame_size_dev_; }
   Duration frame_period() const { return frame_period_; }
-  /// Notes that the queue came from a gap or a drop of the capacity. The reduction of the target
+  /// Notes that a gap or a drop of the capacity has caused the queue. The reduction of the target
   /// that this queue causes then fades fast.
   void OnSuddenBacklog() { sudden_backlog_ = !queue_.empty() || rate_adjust_factor_ > 0; }
-  /// Starts to measure the time without packets, unless the measurement runs already.
+  /// Starts to measure the time without packets, unless this time is already measured.
   void NoteTime(Time now) { last_active_ = last_active_.value_or(now); }
   /// Returns true if the stream has packets, or had some recently.
   bool active(Time now) const;
@@ -61,11 +63,12 @@ class Stream {
   void OnAcked(bool ce) { counters_.packets_ce += ce ? 1 : 0; }
   void OnLost() { ++counters_.packets_lost; }
   StreamStatistics statistics(Time now) const;
-  /// Sum of sent bits over the target bitrate, for the scheduler; see Streams.
+  /// The sum of sent bits, each divided by the target bitrate, by which Streams schedules the
+  /// streams.
   double virtual_time = 0;
 
  private:
-  /// Returns true if frames are so rare that each is a queue by itself.
+  /// Returns true if frames are so rare that each frame forms a queue by itself.
   bool sends_scans() const;
   struct Queued {
     DataSize size;
@@ -86,7 +89,7 @@ class Stream {
   void NoteGroup(Time now, const QueuedPacket& packet);
   using Queue = std::deque<Queued>;
   bool Begun(const Queued& packet) const { return packet.group && packet.group == begun_group_; }
-  /// Returns the position behind an access unit, or behind its group.
+  /// Returns the position after the access unit at `unit`, or after its group.
   Queue::const_iterator UnitEnd(Queue::const_iterator unit) const;
   bool Late(Time now, DataRate rate, Queue::const_iterator unit, Queue::const_iterator next) const;
 
@@ -98,7 +101,7 @@ class Stream {
   mutable RateMeter sent_rate_{1s};
   DataRate target_bitrate_;
   bool counts_ = true;
-  // The SSRC that sends markers; its packets are the frames.
+  // The SSRC that sends markers. Its packets form the frames.
   std::optional<std::uint32_t> media_ssrc_;
   std::optional<std::uint32_t> frame_timestamp_;
   DataSize frame_size_;

@@ -11,7 +11,7 @@
 
 namespace lidar::scream {
 
-/// Identifies a stream of a controller. It is not reused after RemoveStream().
+/// Identifies a stream of a controller. An id is not used again after RemoveStream().
 using StreamId = int;
 
 struct StreamConfig {
@@ -19,24 +19,26 @@ struct StreamConfig {
   DataRate min_bitrate = DataRate::BitsPerSecond(100e3);
   DataRate start_bitrate = DataRate::BitsPerSecond(1e6);
   DataRate max_bitrate = DataRate::BitsPerSecond(50e6);
-  /// Least useful target, from min_bitrate to max_bitrate. It is met while the path can carry it;
-  /// min_bitrate is always met. 0: none.
+  /// The least useful target, between min_bitrate and max_bitrate. The target falls below it only
+  /// if the path cannot carry it, and never falls below min_bitrate. 0 means that there is no such
+  /// value.
   DataRate needed_bitrate{};
-  /// Precedes all other streams, and gets its maximum before they get more than they need.
+  /// If true, the stream takes precedence over all other streams, and gets its maximum before the
+  /// others get more than they need.
   bool strict = false;
 
   DataRate need() const { return std::max(min_bitrate, needed_bitrate); }
   DataRate most() const { return std::max(min_bitrate, max_bitrate); }
 };
 
-/// A packet that enters the sender's queue. `size` is that on the wire, with RTP, UDP and IP
+/// A packet that enters the sender's queue. `size` is its size on the wire, with RTP, UDP and IP
 /// headers.
 struct QueuedPacket {
   std::uint32_t ssrc = 0;
   DataSize size;
   bool marker = false;              ///< last packet of an access unit
   std::uint32_t rtp_timestamp = 0;  ///< the same for all packets of an access unit
-  /// Equal for access units that are useful only together, as the slices of a scan.
+  /// The same for all access units that are useful only together, such as the slices of a scan.
   std::optional<std::uint32_t> group = std::nullopt;
 };
 

@@ -34,7 +34,8 @@ std::optional<StreamId> Streams::Next() const {
   return next;
 }
 
-/// An idle stream gets no credit for the time without packets.
+/// Call it when an idle stream queues a packet. The stream gets no credit for the time without
+/// packets.
 void Streams::OnQueued(Stream* stream) {
   stream->virtual_time = std::max(stream->virtual_time, virtual_now_);
 }
@@ -64,7 +65,8 @@ void Streams::Allocate(Time now, DataRate total) {
   const bool any_active = std::any_of(streams_.begin(), streams_.end(),
                                       [now](const auto& s) { return s.second.active(now); });
   for (auto& [id, stream] : streams_) stream.set_counts(!any_active || stream.active(now));
-  // All needs above the minima are met in the same proportion, as far as the path can carry.
+  // The needs above the minima are met in the same proportion for all streams, as far as the path
+  // can carry them.
   const DataRate least = min_bitrate();
   const DataRate extra = needed_bitrate() - least;
   const double need_share = extra > DataRate() ? std::clamp((total - least) / extra, 0.0, 1.0) : 0;
@@ -77,7 +79,8 @@ void Streams::Allocate(Time now, DataRate total) {
     const DataRate floor = c.min_bitrate + (c.need() - c.min_bitrate) * need_share;
     stream.set_target_bitrate(floor);
     left = left - floor;
-    // The target leaves room for all queues, and each stream's own queue lowers its share.
+    // The target of all streams leaves room for all their queues. The queue of a stream lowers only
+    // the share of this stream.
     const double weight =
         std::max(1e-6, c.priority) / (p_.target_rate_divisor + stream.queue_compensation());
     open.push_back({&stream, weight, floor, c.most()});
@@ -88,8 +91,8 @@ void Streams::Allocate(Time now, DataRate total) {
   Fill({others, open.end()}, left);
 }
 
-/// Shares the rate by weight. A stream at its maximum leaves the rest to others. Returns the
-/// remainder.
+/// Shares the rate `left` by weight. A stream at its maximum leaves the rest to the others. Returns
+/// the rate that remains.
 DataRate Streams::Fill(std::vector<Share> open, DataRate left) {
   while (left.bits_per_second() > 1 && !open.empty()) {
     double weights = 0;
@@ -110,7 +113,8 @@ DataRate Streams::Fill(std::vector<Share> open, DataRate left) {
   return left;
 }
 
-/// A stream with a much shorter backlog keeps its target: it may only wait behind another stream.
+/// Lowers the targets of streams with long backlogs. A stream with a much shorter backlog keeps its
+/// target, because it may only wait behind another stream.
 void Streams::LeaveRoomForBacklogs(Time now) {
   const auto wait = [now](const Stream& s) {
     return s.backlog(now) / std::max(s.target_bitrate(), DataRate::BitsPerSecond(1));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// All streams of a controller: decides which one sends next, and shares the rate among them.
+// All streams of a controller: decides which stream sends next, and shares the rate among the
+// streams.
 #pragma once
 #include <algorithm>
 #include <map>
@@ -22,24 +23,26 @@ class Streams {
   Stream* Find(StreamId id) { return const_cast<Stream*>(std::as_const(*this).Find(id)); }
   std::optional<StreamId> Owner(std::uint32_t ssrc) const;
 
-  /// Returns the next stream: strict ones first, then weighted fair queueing by target bitrates.
+  /// Returns the stream that sends next. Strict streams are first. The other streams share by
+  /// weighted fair queueing, with their target bitrates as weights.
   std::optional<StreamId> Next() const;
   void OnSent(Time now, StreamId id, std::uint32_t ssrc, DataSize size);
   void OnQueued(Stream* stream);
   /// Counts acknowledged and lost packets by stream.
   void OnReport(const AckSummary& acks);
 
-  /// Gives each stream its minimum, and the same part of its need above the minimum. Then shares
-  /// the rest by priority up to each maximum. Silent streams keep their need, unless all are
-  /// silent.
+  /// Sets the targets of all streams. Each stream gets its minimum, and the same fraction of what
+  /// it needs above the minimum. The rest is shared by priority, up to the maximum of each stream.
+  /// A silent stream gets a target that equals its need but is not part of `total`, unless all
+  /// streams are silent.
   void Allocate(Time now, DataRate total);
   /// Lowers the targets of the streams with the longest backlogs by Stream::backlog_rate(), but not
-  /// below their need.
+  /// below what the streams need.
   void LeaveRoomForBacklogs(Time now);
   void OnSuddenBacklog() {
     for (auto& [id, stream] : streams_) stream.OnSuddenBacklog();
   }
-  // Sums over the streams that are not silent, or over all if all are silent.
+  // Sums over the streams that are not silent, or over all streams if all are silent.
   DataRate min_bitrate() const {
     return Sum([](const Stream& s) { return s.config().min_bitrate; });
   }
@@ -56,9 +59,10 @@ class Streams {
   DataRate target_bitrate() const {
     return Sum([](const Stream& s) { return s.target_bitrate(); });
   }
-  /// Frame period of the stream with the highest target.
+  /// Returns the frame period of the stream with the highest target.
   Duration frame_period() const;
-  /// rate_adjust_factor + frame_size_dev, weighted by target.
+  /// Returns the mean of rate_adjust_factor + frame_size_dev, weighted by the targets of the
+  /// streams.
   double queue_compensation() const;
   DataSize queued() const {
     DataSize sum;
@@ -69,7 +73,7 @@ class Streams {
   bool empty() const { return !Next(); }
 
  private:
-  /// A stream's part of the rate so far.
+  /// A stream, and the part of the rate that it has got so far.
   struct Share {
     Stream* stream;
     double weight;

@@ -16,21 +16,22 @@ struct Tunable {
   using Member =
       std::variant<bool Extensions::*, bool Parameters::*, double Parameters::*,
                    Duration Parameters::*, DataSize Parameters::*, DataRate Parameters::*>;
-  const char* name;  ///< name of the draft or extension, with hyphens
+  const char* name;  ///< name in the draft, or of the extension, with hyphens
   Member member;
   double min = 0;
   double max = 1;
 
   bool is_switch() const { return member.index() <= 1; }
-  /// Returns false, without a change, for a value outside of min..max.
+  /// Sets the value in `parameters`. Returns false, without a change, if `value` is outside of
+  /// `min` to `max`.
   bool Set(double value, Parameters* parameters) const;
 };
 
-/// All tunables, in the order of the draft's sections.
+/// Returns all tunables, in the order of the draft's sections.
 const std::vector<Tunable>& Tunables();
-/// Returns NULL for an unknown name. Underscores count as hyphens.
+/// Returns the tunable of that name, or NULL if there is none. Underscores count as hyphens.
 const Tunable* FindTunable(std::string_view name);
-/// All names, separated by commas, for messages.
+/// Returns all names, separated by commas, for messages.
 std::string TunableNames();
 
 }  // namespace lidar::scream

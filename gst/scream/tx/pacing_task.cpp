@@ -216,8 +216,8 @@ Time PacingTask::NextWake(Time now) const {
   for (const auto& stream : s.streams)
     if (!stream->queue.empty() && stream->live.value_or(true))
       wake = std::min(wake, now - stream->HeadAge(now) + s.max_queue_delay);
-  // A late frame stays if it has begun to leave or waits behind a gap: the task checks it again
-  // soon.
+  // A late frame stays in the queue if a part of it has been sent, or while a gap of the link
+  // extends the limit. The task then checks the frame again after a millisecond.
   return std::max(wake, now + std::chrono::milliseconds(1));
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Extension capacity: measures the link by the spacing of packets that came out of its queue.
+// Extension capacity: measures the link's capacity by the spacing of packets that waited in its
+// queue.
 #pragma once
 #include <algorithm>
 #include <deque>
@@ -11,11 +12,12 @@
 
 namespace lidar::scream {
 
-/// Times between packets that all waited in the bottleneck's queue, without the longest pause,
-/// because a link that stood still for a moment is not slower.
+/// The times between packets that all waited in the bottleneck's queue. The longest of these times
+/// is left out, because a link that was interrupted for a moment is not slower.
 class BusySpacing {
  public:
-  /// `arrived` and `left`: time since the previous packet.
+  /// Adds a packet. `arrived` is the time between the arrivals of the previous packet and this one,
+  /// and `left` is the time between their departures.
   void Add(Duration arrived, Duration left, DataSize size) {
     all_ = {all_.arrived + arrived, all_.left + left, all_.size + size};
     if (arrived > pause_.arrived) pause_ = {arrived, left, size};
@@ -23,8 +25,8 @@ class BusySpacing {
   Duration span() const { return all_.arrived; }
   Duration arrived() const { return all_.arrived - pause_.arrived; }
   Duration left() const { return all_.left - pause_.left; }
-  /// Returns nothing if the packets came within less than `least`, because arrival times are
-  /// coarse.
+  /// Returns the rate of the packets, or nothing if they arrived within less than `least`. Arrival
+  /// times are too coarse for a shorter measurement.
   std::optional<DataRate> rate(Duration least) const {
     if (arrived() < least) return std::nullopt;
     return (all_.size - pause_.size) / arrived();
@@ -39,10 +41,10 @@ class BusySpacing {
   Step pause_;  // longest step
 };
 
-/// The link is never idle between packets that all waited in the bottleneck's queue. So their bytes
-/// over their arrival time are the link's capacity, at any rate of the sender. The packets after
-/// the last hole show the present capacity. A hole is a time in which the link carried almost
-/// nothing while packets waited.
+/// Measures the link's capacity from packets that all waited in the bottleneck's queue. The link is
+/// never idle between these packets. Their size divided by their arrival time is therefore the
+/// capacity, at any rate of the sender. The packets after the last hole show the current capacity.
+/// A hole is a time in which the link carried almost nothing although packets waited.
 class BusyRun {
  public:
   struct Arrival {
@@ -54,14 +56,14 @@ class BusyRun {
     bool marked = false;
   };
 
-  /// Returns true if the packet came after a hole.
+  /// Adds an acknowledged packet. Returns true if there was a hole before its arrival.
   bool Add(Arrival a) {
     const bool hole = last_ && std::min(a.time - last_->time, a.qdelay) > kHole;
     const bool back = last_ && a.time < last_->time;
     if (!a.busy || back) EndRun();
     if (!a.busy || back || hole) latest_.clear();
     if (a.busy) {
-      // A packet of the last report may have overtaken this one.
+      // The last packet of the previous report may have overtaken this packet.
       if (packets_ > 0) a.sent = std::max(a.sent, last_->sent);
       if (packets_ > 0) spacing_.Add(a.time - last_->time, a.sent - last_->sent, a.size);
       ++packets_;
@@ -73,7 +75,8 @@ class BusyRun {
     return hole;
   }
   void Reset() { *this = BusyRun(); }
-  /// Ends the run: the time before the next packet is unknown. A hole is still detected.
+  /// Ends the run, because the time between the last packet and the next one is unknown. A hole is
+  /// still detected.
   void EndRun() {
     spacing_ = BusySpacing();
     packets_ = marked_ = 0;
@@ -82,22 +85,23 @@ class BusyRun {
   int packets() const { return packets_; }
   int marked() const { return marked_; }
   Duration span() const { return spacing_.span(); }
-  /// Returns the present capacity, or nothing if too few packets show it.
+  /// Returns the current capacity, or nothing if there are too few packets after the last hole.
   std::optional<DataRate> latest_capacity() const {
     BusySpacing spacing;
     for (std::size_t i = 1; i < latest_.size(); ++i)
       spacing.Add(latest_[i].time - latest_[i - 1].time, Duration{0}, latest_[i].size);
     return latest_.size() < kMinLatest ? std::nullopt : spacing.rate(kMinLatestBusy);
   }
-  /// Returns the larger of the whole run's capacity and the present one. Returns nothing for a run
-  /// that is too short.
+  /// Returns the capacity measured by the whole run, or the current capacity if that is larger.
+  /// Returns nothing if the run is too short.
   std::optional<DataRate> capacity() const {
     const auto whole = packets_ < kMinPackets ? std::nullopt : spacing_.rate(kMinBusy);
     return whole ? std::max(whole, latest_capacity()) : std::nullopt;
   }
-  /// Returns the growth of the queueing delay from the first packet to the last, as a multiple of
-  /// the mean time between departures. A link that is slower than the sender spreads the packets.
-  /// The longest pause does not count. Infinite if all packets left at once.
+  /// Returns how much the queueing delay has grown from the first packet to the last, as a multiple
+  /// of the mean time between departures. The delay grows if the link is slower than the sender,
+  /// because the packets then arrive further apart than they left. The longest pause does not
+  /// count. Returns infinity if all packets left at once.
   double growth() const {
     const Duration arrived = spacing_.arrived();
     const Duration left = spacing_.left();

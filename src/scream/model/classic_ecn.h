@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Detects a bottleneck that marks ECT(1) like ECT(0), as RFC 3168 says (RFC 9331, section 4.3).
+// Detects a bottleneck with classic ECN (RFC 3168), which marks ECT(1) packets like ECT(0) packets
+// (RFC 9331, section 4.3).
 #pragma once
 #include "src/scream/model/recent_min.h"
 
 namespace lidar::scream {
 
-/// An L4S bottleneck marks each packet behind a long queue, whereas a classic one marks few
-/// packets. So in rounds with marks, the queue that unmarked packets met distinguishes the two
-/// kinds. The shortest delay of the last seconds is subtracted, because a longer route is not a
-/// queue.
+/// An L4S bottleneck marks every packet that waits in a long queue, whereas a classic bottleneck
+/// marks only a few. In rounds with marks, the delay of unmarked packets is therefore short at an
+/// L4S bottleneck and long at a classic one. The shortest delay of the last seconds is subtracted,
+/// so that a longer route does not count as a queue.
 class ClassicEcn {
  public:
   void OnPacket(Time now, Duration qdelay, bool marked) {

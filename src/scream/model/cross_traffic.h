@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Beyond the draft: finds other flows at the bottleneck, and its capacity for all flows.
+// Beyond the draft: detects other flows at the bottleneck, and measures the bottleneck's capacity
+// for all flows.
 #pragma once
 #include <algorithm>
 #include <optional>
@@ -10,11 +11,12 @@
 
 namespace lidar::scream {
 
-/// While the bottleneck's queue is not empty, only packets of other flows come between our
-/// arrivals. In a linear fit of arrival gaps over departure gaps, the slope is the others' share of
-/// the link, and the intercept is the link's time for one of our packets. The pacer makes
-/// departures slightly uneven for this measurement, which takes many packets because arrival times
-/// of reports are coarse.
+/// While the bottleneck's queue is not empty, only packets of other flows arrive between two of our
+/// packets. A line is fitted to the arrival gaps as a function of the departure gaps. Its slope is
+/// the share of the link that the other flows use. Its intercept is the time that the link takes
+/// for one of our packets. The pacer makes departures slightly uneven, because even departures do
+/// not show the slope. The measurement takes many packets, because the arrival times in reports are
+/// coarse.
 class CrossTraffic {
  public:
   struct Packet {
@@ -23,15 +25,16 @@ class CrossTraffic {
     DataSize size;
   };
 
-  /// `congested`: marks or losses prove the queue. Jitter or clock drift may look like a queue, and
-  /// an idle link then looks like other flows: arrival gaps follow departure gaps on both.
+  /// `congested` is true if marks or losses prove that there is a queue. Without this proof, jitter
+  /// or clock drift may look like a queue. An idle link would then look like a link with other
+  /// flows, because arrival gaps follow departure gaps in both cases.
   void Add(const Packet& packet, Duration qdelay, bool congested) {
     if (!congested) {
       Skip(packet.sent);
       return;
     }
-    // The queue that earlier packets met decides, because whether a packet counts must not depend
-    // on its own arrival.
+    // A packet counts if earlier packets met a queue. Its own arrival must not decide, because a
+    // selection by arrival times would distort the fit.
     const double waited_ms = std::min(lately_waited_ms_, waited_ms_);
     waited_ms_ = Ms(qdelay);
     lately_waited_ms_ += (waited_ms_ - lately_waited_ms_) / 4;
@@ -49,20 +52,22 @@ class CrossTraffic {
     Count(sent_ms, arrived_ms, static_cast<double>(packet.size.bytes()));
     Decide(weight);
   }
-  /// Call it at each report: only arrival times within a report have the same rounding.
+  /// Call it at the start of each report, because only arrival times in the same report have the
+  /// same rounding.
   void BeginReport() { last_.reset(); }
-  /// Returns true if other flows were found. The result stays while departures are too even to show
-  /// them.
+  /// Returns true if other flows were detected. The result does not change while departures are too
+  /// even to show other flows.
   bool found() const { return found_; }
-  /// Share of the link that others use while we send; unset while too little is known.
+  /// Returns the share of the link that other flows use while we send, or nothing while too little
+  /// is known.
   std::optional<double> share() const {
     if (sent_sent_ < kEvidence) return std::nullopt;
     return sent_arrived_ / sent_sent_;
   }
-  /// Returns true after a long queue of unknown origin. Other flows may fill it, but our packets
-  /// are too far apart, or reports too coarse, to show them.
+  /// Returns true after a long queue of unknown origin. Other flows may have filled it, although
+  /// they could not be measured, because our packets are too far apart or reports are too coarse.
   bool unseen() const { return unseen_ >= kDecisionWeight; }
-  /// Capacity of the link for all flows; unset while share() is unset.
+  /// Returns the capacity of the link for all flows, or nothing while too little is known.
   std::optional<DataRate> link_rate() const {
     const auto share = this->share();
     const double own_ms = arrived_.value - share.value_or(0) * sent_.value;
@@ -87,7 +92,8 @@ class CrossTraffic {
     sent_.Add(sent_ms, weight);
     arrived_.Add(arrived_ms, weight);
     bytes_.Add(bytes, weight);
-    // Spacings count relative to recent averages, because our rate and the link's change them.
+    // Gaps are compared with recent averages, because the averages follow changes of our rate and
+    // of the link's rate.
     lately_sent_.Add(sent_ms, 1 / kLately);
     lately_arrived_.Add(arrived_ms, 1 / kLately);
     const double sent = sent_ms - lately_sent_.value;
@@ -95,19 +101,19 @@ class CrossTraffic {
     sent_arrived_ += sent * (arrived_ms - lately_arrived_.value);
     if (sent_sent_ > kMostEvidence) Scale(kMostEvidence / sent_sent_);
   }
-  /// Ages the evidence: a share without new evidence becomes unknown, and old evidence does not
-  /// outweigh new.
+  /// Reduces the weight of old evidence. Without new evidence the share becomes unknown, and old
+  /// evidence does not outweigh new evidence.
   void Scale(double factor) {
     sent_sent_ *= factor;
     sent_arrived_ *= factor;
   }
-  /// Returns the time between packets [ms] as a weight, so that a few packets far apart weigh as
-  /// much as many close ones.
+  /// Returns the time between packets [ms] as a weight. A few packets that are far apart then weigh
+  /// as much as many packets that are close together.
   static int Weight(double apart_ms) {
     return static_cast<int>(std::clamp(apart_ms, 1.0, kMostWeight));
   }
-  /// Changes the decision only after much evidence against it: a start, or a step of the capacity,
-  /// must be over first.
+  /// Changes `found_` only after much evidence against it. The start of a flow, or a step of the
+  /// capacity, is over by then.
   void Decide(int weight) {
     const auto share = this->share();
     const bool same = !share || (*share > kShareToFind) == found_;
@@ -122,14 +128,14 @@ class CrossTraffic {
   static constexpr int kDecisionWeight = 768;  // number of packets, or milliseconds between them
   static constexpr double kMostWeight = 10;
   static constexpr Duration kForgotten = std::chrono::seconds(10);
-  /// A longer pause is a gap of the link, or a clock that was set.
+  /// A longer arrival gap [ms] is a gap of the link, or a clock that was set.
   static constexpr double kPauseMs = 15;
-  /// Longest gap between the pacer's departures, in average gaps.
+  /// The longest gap between departures that the pacer makes, relative to the average gap.
   static constexpr double kLongestGap = 1.5;
-  /// Mean error of delays, because arrival times are rounded up.
+  /// The mean error of measured delays [ms], which is due to arrival times that are rounded up.
   static constexpr double kTickMs = 0.5;
-  /// Sum of squared deviations of departure gaps [ms^2] that shows the share: rounding of arrival
-  /// times to 1/1024 s then leaves an error of 0.1.
+  /// The sum of squared deviations of departure gaps [ms^2] from which on the share is known. The
+  /// rounding of arrival times to 1/1024 s then causes an error of 0.1.
   static constexpr double kEvidence = 30;
   static constexpr double kMostEvidence = 2 * kEvidence;
   static constexpr double kShareToFind = 0.2;

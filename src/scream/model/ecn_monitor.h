@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Checks what the path does to our ECN codepoint. Falls back to Not-ECT if the path does not keep
-// it.
+// Checks what the path does to our ECN codepoint. If the path does not keep the codepoint, the
+// sender falls back to Not-ECT.
 #pragma once
 #include "src/scream/parameters.h"
 #include "src/scream/statistics.h"
 
 namespace lidar::scream {
 
-/// Bleached: packets sent as ECT arrive as Not-ECT. Silent: Not-ECT packets are acknowledged, ECT
-/// packets are not. Both states last until Reset() after a change of route. If nothing is
-/// acknowledged, the cause may be ECN or a missing receiver, so packets leave as ECT and Not-ECT by
-/// turns.
+/// The state is kBleached if packets that were sent as ECT arrive as Not-ECT. It is kSilent if
+/// Not-ECT packets are acknowledged but ECT packets are not. Both states last until Reset(), which
+/// follows a change of the route. If no packet is acknowledged, the cause may be ECN or a missing
+/// receiver. To find the cause, packets are then sent as ECT and as Not-ECT alternately.
 class EcnMonitor {
  public:
   explicit EcnMonitor(Ecn wanted) : wanted_(wanted) { Reset(); }
@@ -42,7 +42,8 @@ class EcnMonitor {
     takes_turns_ = plain_next_ = false;
   }
   void OnTimer(Time now) {
-    // A capable path is tested, too: if a new route drops ECT, no report shows the change of route.
+    // A capable path is tested, too, because a new route may drop ECT packets, and then no report
+    // arrives that would show the change of the route.
     if (Tries() && sent_ >= kSilentPackets && now - first_sent_ >= kSilence) takes_turns_ = true;
   }
 
@@ -52,10 +53,10 @@ class EcnMonitor {
  private:
   bool Tries() const { return state_ == EcnState::kTesting || state_ == EcnState::kCapable; }
 
-  /// Number of packets without their codepoint that cannot be chance.
+  /// The number of packets that arrive in a row without their codepoint and thus exclude chance.
   static constexpr int kBleachedPackets = 20;
-  /// Number of unacknowledged packets, and time, after which ECN may be the cause of silence. The
-  /// same number of acknowledged Not-ECT packets proves it.
+  /// ECN may be the cause of silence if this many packets were sent and none is acknowledged for
+  /// kSilence. ECN is the cause if this many Not-ECT packets are then acknowledged.
   static constexpr int kSilentPackets = 10;
   static constexpr Duration kSilence = 2s;
   Ecn wanted_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The time from which packets say something about the present path.
+// The sending times from which on packets are evidence about the current path.
 #pragma once
 #include <algorithm>
 
@@ -7,15 +7,16 @@
 
 namespace lidar::scream {
 
-/// The marks, losses, delays and round trips of packets that met a gap, an outage or another route
-/// do not count. Packets that were under way at a reaction cause no second reaction.
+/// Decides by its sending time whether a packet counts. The marks, losses, delays and round trips
+/// of packets that met a gap, an outage or another route do not count. Packets that were in flight
+/// when the sender reacted to congestion do not cause a second reaction.
 class Evidence {
  public:
   void BeginAt(Time time) {
     begin_ = std::max(begin_, time);
     OnDropReaction(begin_);
   }
-  /// Called after the window has followed a fall of the capacity.
+  /// Call it after the window was reduced because the capacity had fallen.
   void OnDropReaction(Time now) {
     marks_ = std::max(marks_, now);
     OnLossReaction(now);
@@ -25,7 +26,8 @@ class Evidence {
   bool Counts(Time sent) const { return sent >= begin_; }
   bool MarkCounts(Time sent) const { return sent >= marks_; }
   bool LossCounts(Time sent) const { return sent >= losses_; }
-  /// Returns true if the newest packet of the report counts, or if no packet is acknowledged.
+  /// Returns true if the newest packet that the report acknowledges counts, or if the report
+  /// acknowledges no packet.
   bool Counts(const AckSummary& acks) const {
     return acks.acked.empty() || Counts(acks.acked.back().sent);
   }

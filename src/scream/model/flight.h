@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Greatest bytes in flight (max_bytes_in_flight) of this round trip, the last one, and the last
-// few.
+// The greatest number of bytes in flight (max_bytes_in_flight) in the current round trip, in the
+// previous one, and in the last few.
 #pragma once
 #include <algorithm>
 #include <deque>
@@ -22,7 +22,7 @@ class MaxBytesInFlight {
   }
   DataSize current() const { return current_; }
   DataSize previous() const { return history_.empty() ? DataSize() : history_.front(); }
-  /// Greatest value of this round trip and the last one.
+  /// Returns the greatest value in the current and the previous round trip.
   DataSize lately() const { return std::max(current_, previous()); }
   DataSize longest() const {
     DataSize max = current_;

@@ -11,10 +11,11 @@ class L4sAlpha {
  public:
   explicit L4sAlpha(const Parameters& p) : p_(p) {}
 
-  /// `round` is a round trip, or a frame period if that is longer. With the extension capacity the
-  /// fraction is that of a whole round, and alpha rises as fast as it falls. Fractions of few
-  /// packets scatter, and a step AQM marks all packets of some rounds and no packets of others. A
-  /// fast attack with slow decay would turn both into a bias against the smaller of two flows.
+  /// `round` is a round trip, or a frame period if that is longer. With the extension capacity, the
+  /// fraction is measured over a whole round, and alpha rises as slowly as it falls, unless the
+  /// capacity falls. There are two reasons: the fractions of few packets scatter, and a step AQM
+  /// marks all packets of some rounds and no packets of others. If alpha rose fast and fell slowly,
+  /// both would become a bias against the smaller of two flows.
   void Update(Time now, int data_units_acked, int data_units_acked_ce, Duration s_rtt,
               Duration round) {
     delivered_ += data_units_acked;
@@ -45,9 +46,9 @@ class L4sAlpha {
   double value() const { return alpha_; }
 
  private:
-  /// Counts marked rounds, and returns true if they show a fall of the capacity. A step AQM marks
-  /// one whole round, and a fall two rounds in a row. A long round has enough packets to show a
-  /// fall alone.
+  /// Counts the marked rounds in a row, and returns true if they show that the capacity has fallen.
+  /// A step AQM marks one whole round, whereas a fall marks two rounds in a row. One long round is
+  /// enough, because it has many packets.
   bool CountsAsFall(double fraction, Duration round) {
     marked_rounds_ = fraction < p_.even_alpha_max ? 0 : marked_rounds_ + 1;
     const int enough = round < p_.long_frame_period ? 2 : 1;
@@ -56,7 +57,7 @@ class L4sAlpha {
 
   static constexpr double kFall = 1.0 / 8;
   static constexpr Duration kUpdateInterval = 10ms;
-  /// Longer rounds, as of whole scans, weigh more.
+  /// Longer rounds, such as those of whole scans, have more weight.
   static constexpr Duration kEvenRound = 40ms;
   const Parameters& p_;
   double alpha_ = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Decides whether packets are lost at a long queue, or independently of the queue.
+// Decides whether packets are lost because a queue is full, or independently of the queue.
 #pragma once
 #include <algorithm>
 #include <deque>
@@ -8,9 +8,10 @@
 
 namespace lidar::scream {
 
-/// A radio loses packets at any queue length; a full queue loses those that overflow it. The rank
-/// of a loss is the share of recent packet pairs that waited less than the two packets around the
-/// loss. The mean rank is one half for random loss, and nearly one for a full queue, however short.
+/// A radio link loses packets at any length of the queue, whereas a full queue loses the packets
+/// that overflow it. The rank of a loss is the fraction of recent packet pairs that waited less
+/// than the two packets around the loss. The mean rank is one half if losses are random. It is
+/// nearly one if a full queue causes the losses, however short this queue is.
 class LossContext {
  public:
   void OnAcked(Time sent, Duration qdelay) {
@@ -34,15 +35,16 @@ class LossContext {
   Duration LongerOfPair(std::size_t second) const {
     return std::max(recent_[second - 1].qdelay, recent_[second].qdelay);
   }
-  /// Returns the longer delay of the two packets just before and just after the loss, or of the two
-  /// nearest packets if one side has no packet.
+  /// Returns the longer delay of the two packets that were sent just before and just after the
+  /// loss. If one of them is missing, uses the two nearest packets.
   Duration QdelayAround(Time sent) const {
     const auto after = std::find_if(recent_.begin(), recent_.end(),
                                     [sent](const Packet& p) { return p.sent >= sent; });
     const auto index = static_cast<std::size_t>(after - recent_.begin());
     return LongerOfPair(std::clamp<std::size_t>(index, 1, recent_.size() - 1));
   }
-  /// Ranks among pairs, as the longer of two delays exceeds most single delays.
+  /// Returns the rank of `qdelay` among pairs of packets. Pairs are compared because `qdelay` is
+  /// the longer delay of a pair, too, which exceeds most single delays.
   double Rank(Duration qdelay) const {
     double below = 0;
     for (std::size_t i = 1; i < recent_.size(); ++i) {

@@ -7,21 +7,21 @@
 namespace lidar::scream {
 namespace {
 
-/// Time after a mark in which marks are the expected sign of congestion.
+/// Marks are the expected sign of congestion for this time after a mark.
 constexpr Duration kMarksExpected = 30s;
-/// Time after a loss in which a queue may overflow again.
+/// A full queue is expected to overflow again within this time after a loss.
 constexpr Duration kLossesExpected = 10s;
-/// Unreported packets do not matter if reports follow each other within a round trip divided by
-/// this.
+/// Unreported packets do not matter if the time between reports is less than a round trip divided
+/// by this number.
 constexpr int kCloseReports = 5;
-/// Longer gaps between reports count as this time.
+/// A longer time between reports counts as this time.
 constexpr Duration kLongestInterval = 100ms;
 constexpr double kCapacityGain = 0.25;
 constexpr double kOnsetFall = 1.0 / 32;
 constexpr double kOnsetRise = 1.0 / 128;
-/// This number of packets in a row that met a queue cannot be chance.
+/// If this many packets in a row met a queue, this cannot be chance.
 constexpr int kQueueingPackets = 3;
-/// Least duration of the clock-drift remedy, which otherwise lasts five round trips.
+/// The least duration of the clock-drift remedy, which usually lasts five round trips.
 constexpr Duration kShortestHalfRate = 200ms;
 
 }  // namespace
@@ -145,8 +145,9 @@ void PathModel::ObserveCapacity(Time now, const AckSummary& acks) {
   EstimateCapacity(now);
 }
 
-/// Packets that come out of a queue show the capacity, whatever the rate of the source. Otherwise
-/// the acknowledged rate is a lower bound of the capacity.
+/// Updates the estimates of the capacity. Packets that come out of a queue show the capacity,
+/// whatever the rate of the source is. Without them, the acknowledged rate is a lower bound of the
+/// capacity.
 void PathModel::EstimateCapacity(Time now) {
   acked_peak_ = std::max(acked_peak_, acked_rate_.Rate(now));
   const auto rate = busy_run_.latest_capacity();
@@ -156,7 +157,8 @@ void PathModel::EstimateCapacity(Time now) {
   acked_peak_ = DataRate();
 }
 
-/// Weights reports by what they acknowledge: a pause of the source is no gap between reports.
+/// Averages the time between reports. The weight of a report is what it acknowledges, because a
+/// pause of the source must not count as a gap between reports.
 void PathModel::MeasureReports(Time now, const AckSummary& acks, DataSize ref_wnd) {
   const Duration gap = std::min(now - std::exchange(last_report_, now), kLongestInterval);
   const double weight = std::min(1.0, acks.bytes_newly_acked / ref_wnd);

@@ -28,25 +28,26 @@ struct SenderState {
   Duration frame_period{0};
 };
 
-/// The estimators of one path. They measure; the responses decide.
+/// The estimators of one path. They only measure, and the classes in `response/` decide how to
+/// react.
 class PathModel {
  public:
   explicit PathModel(const Parameters& parameters) : p_(parameters) {}
 
-  /// `in_flight` includes the packet.
+  /// Call it for each packet that is sent. `in_flight` includes the packet.
   void OnSent(Time now, DataSize size, Ecn ecn, DataSize in_flight);
   /// Call it before OnReport().
   void OnRoundTrip(Time now, const AckSummary& acks) {
     if (acks.rtt && evidence_.Counts(acks)) rtt_.Add(now, *acks.rtt);
   }
   void OnReport(Time now, const AckSummary& acks, const SenderState& sender);
-  /// Call it after a gap. Packets sent before `now` met the gap and do not count.
+  /// Call it after a gap. Packets that were sent before `now` have met the gap and do not count.
   void OnGapEnd(Time now, Duration s_rtt, double l4s_alpha);
   void EndRoundTrip(Time now) {
     max_in_flight_.Update(now, std::max(p_.virtual_rtt, rtt_.smoothed()));
   }
   void OnTimer(Time now) { ecn_.OnTimer(now); }
-  /// Call it after a change of route. Forgets base delay, round trip, ECN, marks, losses and
+  /// Call it after a change of the route. Resets the base delay, round trip, ECN, marks, losses and
   /// capacity.
   void Reset(Time now);
 
@@ -55,56 +56,62 @@ class PathModel {
   const RoundTripTime& rtt() const { return rtt_; }
   const QueueDelay& queue_delay() const { return queue_delay_; }
   const L4sAlpha& l4s_alpha() const { return l4s_alpha_; }
-  /// Averaged by the draft's section "Link layer losses and rate policers".
+  /// Returns the loss rate, averaged as in the draft's section "Link layer losses and rate
+  /// policers".
   double loss_rate() const { return loss_rate_; }
   const LossContext& loss_context() const { return loss_context_; }
   const ClassicEcn& classic_ecn() const { return classic_ecn_; }
   const CrossTraffic& cross_traffic() const { return cross_traffic_; }
   const EcnMonitor& ecn() const { return ecn_; }
   const BusyRun& busy_run() const { return busy_run_; }
-  /// Queue delay at which the bottleneck starts to mark: a low quantile of the queue delays of
-  /// marked packets. Its resolution is about a millisecond, because arrival times of reports are
-  /// coarse and the base delay is their minimum.
+  /// Returns the queue delay at which the bottleneck starts to mark. It is a low quantile of the
+  /// queue delays of marked packets. Its resolution is about a millisecond, because arrival times
+  /// in reports are coarse and the base delay is the minimum of coarse delays.
   Duration marking_onset() const { return marking_onset_; }
-  /// The link's capacity, measured by the spacing of packets that it held back; 0 while unknown.
+  /// Returns the link's capacity, measured by the spacing of packets that waited in its queue, or 0
+  /// if the capacity is unknown.
   DataRate measured_capacity() const { return measured_capacity_; }
-  // What the last report showed. A new mark or loss is one that no reaction has answered.
+  // The results of the last report. A mark or loss is new if the sender has not reacted to it yet.
   bool new_mark() const { return new_mark_; }
   bool new_loss() const { return new_loss_; }
-  /// The link carried almost nothing for a time before a packet of the report.
+  /// Returns true if the link carried almost nothing for a while before it carried a packet of the
+  /// last report.
   bool hole_in_report() const { return hole_in_report_; }
-  /// Returns true after a mark within the last round trip.
+  /// Returns true if a mark was reported within the last round trip.
   bool MarkedLately(Time now) const { return last_mark_ && now - *last_mark_ < rtt_.min(); }
-  /// The newest acknowledged packet was marked.
+  /// Returns true if the newest acknowledged packet was marked.
   bool newest_marked() const { return newest_marked_; }
   const MaxBytesInFlight& max_in_flight() const { return max_in_flight_; }
-  /// Averaged over a round trip, or over two frame periods if those are longer.
+  /// Returns the acknowledged rate, averaged over a round trip or, if that is longer, over two
+  /// frame periods.
   DataRate acked_rate(Time now) const { return acked_rate_.Rate(now); }
-  /// Averaged over a second. The rate is read at arrivals, where a shorter average would ignore
-  /// pauses between frames.
+  /// Returns the acknowledged rate, averaged over a second. The rate is read when packets arrive,
+  /// so that a shorter average would ignore the pauses between frames.
   DataRate long_acked_rate(Time now) const { return long_acked_rate_.Rate(now); }
 
   /// Returns true if the path carries ECT(1) and its bottleneck has recently marked it.
   bool L4sWorks(Time now) const;
-  /// Queueing delay at which a packet shows a busy link. Without marks it is close to the delay
-  /// that the draft counts as congestion.
+  /// Returns the queueing delay of a packet that shows a busy link. Without marks it is close to
+  /// the delay that the draft counts as congestion.
   Duration BusyQdelay(Time now) const;
-  /// Returns true if the queue exceeds `qdelay` and packets keep coming out of it.
+  /// Returns true if the queueing delay exceeds `qdelay` and the latest packets all waited in a
+  /// queue.
   bool Queueing(Duration qdelay) const;
-  /// Least time between reactions: min(VIRTUAL_RTT, s_rtt).
+  /// Returns the least time between reactions: min(VIRTUAL_RTT, s_rtt).
   Duration ReactionInterval() const { return std::min(p_.virtual_rtt, rtt_.smoothed()); }
-  /// Round trip, but at least VIRTUAL_RTT and a frame period, because marks of a frame source come
-  /// once a frame.
+  /// Returns the round trip, but at least VIRTUAL_RTT and a frame period. The frame period matters
+  /// because the marks of a source of frames arrive once per frame.
   Duration Round(Duration frame_period) const {
     return std::max({rtt_.smoothed(), p_.virtual_rtt, frame_period});
   }
   Duration report_gap() const { return report_gap_; }
-  /// Time for which arrived packets are unreported and still count as in flight. It is 0 unless
-  /// reports are far apart relative to the round trip.
+  /// Returns for how long packets that have arrived still count as in flight, because no report has
+  /// acknowledged them. The time is 0 unless reports are far apart relative to the round trip.
   Duration UnreportedTime() const;
-  /// The draft sends at half the rate until this time, because the clocks drift apart.
+  /// Returns the time until which the draft sends at half the rate, because the clocks drift apart.
   Time half_rate_until() const { return half_rate_until_; }
-  /// Fills in round trips, delays, marks and rates; leaves other statistics alone.
+  /// Sets the fields of `statistics` for round trips, delays, marks and rates. Does not change the
+  /// other fields.
   void Describe(Time now, Statistics* statistics) const;
 
  private:

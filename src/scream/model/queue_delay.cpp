@@ -6,12 +6,12 @@
 namespace lidar::scream {
 namespace {
 
-/// The base history covers the ten minutes of RFC 6817.
+/// The base history covers ten minutes, as in RFC 6817.
 constexpr Duration kBaseInterval = 10s;
 constexpr std::size_t kBaseHistory = 60;
-/// The base history is shorter if marks prevent a long-standing queue.
+/// A shorter base history is used if marks prevent a long-standing queue.
 constexpr std::size_t kBaseHistoryMarked = 3;
-/// A clock jumped if a delay is shorter than its minimum by this.
+/// A clock has jumped if a delay is shorter than its minimum by more than this.
 constexpr Duration kJump = 100ms;
 
 Duration Scale(Duration d, double f) { return FromSeconds(Seconds(d) * f); }
@@ -35,7 +35,8 @@ void QueueDelay::ForgetBase() {
   min_this_rtt_ = Duration::max();
 }
 
-/// A queue only lengthens delays. A clock that is set makes one direction shorter than its minimum.
+/// Returns true if a clock has jumped. A queue can only lengthen delays, but a clock that is set
+/// makes the delay in one direction shorter than its minimum.
 bool QueueDelay::Jumped(Time now, Duration owd, Duration way_back) {
   if (!p_.extensions.evidence) return false;
   const bool way_back_jumped = shortest_back_.Add(now, way_back) > kJump;
@@ -59,7 +60,8 @@ bool QueueDelay::Add(Time now, const DelaySample& sample, bool short_history) {
   const bool jumped = base_ && Jumped(now, owd, sample.way_back);
   if (jumped) {
     ForgetBase();
-    // Subtracts the delay of the present queue, which the round trip still shows.
+    // The new base does not include the delay of the current queue, which the round trip still
+    // shows.
     AddToBase(now, owd - sample.rtt_excess, short_history);
   }
   AddToBase(now, owd, short_history);

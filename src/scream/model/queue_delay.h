@@ -13,22 +13,24 @@ namespace lidar::scream {
 struct DelaySample {
   Time sent{};
   Time arrival{};  ///< on the receiver's clock
-  /// Round trip above its minimum, an upper bound for a queue's delay.
+  /// The excess of the round trip over its minimum. It is an upper bound of the queueing delay.
   Duration rtt_excess{0};
-  /// Time from the report, on the receiver's clock, to its arrival on ours.
+  /// The time between the report, on the receiver's clock, and its arrival, on our clock.
   Duration way_back{0};
 };
 
-/// One-way delay above its base (RFC 6817). The clocks share no epoch, so only differences count.
+/// Measures the queueing delay as the one-way delay above its base (RFC 6817). The clocks of sender
+/// and receiver have no common epoch, so that only differences of one-way delays have a meaning.
 class QueueDelay {
  public:
   explicit QueueDelay(const Parameters& parameters) : p_(parameters) {}
 
-  /// Returns false if the clocks jumped relative to each other; the base is then taken anew. With
-  /// `short_history` the base is the minimum of the last half minute.
+  /// Adds a packet. If the clocks have jumped relative to each other, starts a new base and returns
+  /// false. If `short_history` is true, the base is the minimum of the last half minute.
   bool Add(Time now, const DelaySample& sample, bool short_history = false);
-  /// Updates the averages after the packets of a report, at most once every min(VIRTUAL_RTT,
-  /// s_rtt). Returns true if the clock-drift remedy takes a new base.
+  /// Updates the averages. Call it after the packets of a report were added. The averages change at
+  /// most once every min(VIRTUAL_RTT, s_rtt). Returns true if the clock-drift remedy starts a new
+  /// base.
   bool Update(Time now, Duration s_rtt);
   void ForgetQueue() { qdelay_avg_ = Duration{0}; }
   void Reset();
@@ -38,7 +40,7 @@ class QueueDelay {
   Duration qdelay_avg() const { return qdelay_avg_; }
   /// Returns true if qdelay_avg fell at its last update.
   bool qdelay_avg_falls() const { return qdelay_avg_falls_; }
-  /// 1: no jitter, 0: much jitter. Always 1 without REDUCE_JITTER.
+  /// Returns a value from 0 (much jitter) to 1 (no jitter). It is always 1 without REDUCE_JITTER.
   double ref_wnd_delay_scale() const { return ref_wnd_delay_scale_; }
 
  private:

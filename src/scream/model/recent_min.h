@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Minimum of durations over the present and the previous window, so that an old minimum is
-// forgotten.
+// The minimum of durations in the current and the previous window. Older durations are forgotten.
 #pragma once
 #include <algorithm>
 #include <utility>
@@ -13,7 +12,8 @@ class RecentMin {
  public:
   explicit RecentMin(Duration window) : window_(window) {}
 
-  /// Returns by how much `d` is below the earlier minimum; 0 without an earlier minimum.
+  /// Adds a duration. Returns by how much `d` is below the previous minimum, or 0 if there was no
+  /// minimum.
   Duration Add(Time now, Duration d) {
     if (now - since_ >= window_) {
       previous_ = std::exchange(latest_, Duration::max());
@@ -24,7 +24,7 @@ class RecentMin {
     return before == Duration::max() ? Duration{0} : before - value();
   }
   void Forget() { latest_ = previous_ = Duration::max(); }
-  /// Duration::max() before the first Add().
+  /// Returns the minimum, or Duration::max() before the first Add().
   Duration value() const { return std::min(latest_, previous_); }
 
  private:

@@ -24,7 +24,8 @@ class RoundTripTime {
 
   bool known() const { return smoothed_.has_value(); }
   Duration smoothed() const { return smoothed_.value_or(kInitial); }
-  /// Minimum of the last 30 to 60 s, because a path may become longer permanently.
+  /// Returns the minimum of the last 30 to 60 s. Older values do not count, because a path may
+  /// become longer permanently.
   Duration min() const { return smoothed_ ? min_.value() : kInitial; }
   Duration last() const { return last_; }
 

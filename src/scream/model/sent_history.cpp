@@ -9,32 +9,35 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Limit of packets per SSRC, because extended sequence numbers are unique within half of their
-/// range.
+/// The greatest number of packets per SSRC. More packets cannot be kept, because extended sequence
+/// numbers are unique only within half of their range.
 constexpr std::size_t kMaxPackets = 32000;
 /// Settled packets are kept so that repeated reports are recognised, and late packets are
-/// distinguished from lost ones. Beyond this number only packets younger than kKeepSettled are
-/// kept.
+/// distinguished from lost packets. If there are more than kMaxSettled, only packets younger than
+/// kKeepSettled are kept.
 constexpr std::size_t kMaxSettled = 1024;
 constexpr Duration kKeepSettled = 1s;
-/// A packet may be sent after packets with larger numbers if the numbers differ by less than this.
+/// A packet may be sent after packets with higher numbers if the numbers differ by less than this.
 constexpr std::int64_t kOvertaken = 64;
-/// Numbers that go back by kFarBehind or more start a new count after kUnknownBehind unknown or
-/// kKnownBehind known numbers in a row. Receivers take a smaller step back for reordering, and do
-/// not count the packets until their numbers are new again.
+/// The numbers of an SSRC start again if they go back by kFarBehind or more, and then
+/// kUnknownBehind unknown numbers or kKnownBehind known numbers follow in a row. A receiver takes a
+/// smaller step back for reordering, and does not count the packets after it until their numbers
+/// are new again.
 constexpr std::int64_t kFarBehind = 3000;
 constexpr int kUnknownBehind = 2;
 constexpr int kKnownBehind = 64;
-/// Time after a restart in which reports of earlier numbers may come.
+/// Reports about the earlier numbers may arrive for this time after a restart.
 constexpr Duration kReportsOfBefore = 2s;
 /// A packet is given up if a packet that was sent this much later is acknowledged.
 constexpr Duration kTailWait = 1s;
-/// The reordering window stays for this time, and then shrinks by 1 / kReorderingDecay each second.
+/// The reordering window keeps its size for this time, and then shrinks by 1 / kReorderingDecay
+/// each second.
 constexpr Duration kReorderingMemory = 5s;
 constexpr int kReorderingDecay = 8;
-/// SSRCs come and go with restarts; the one with the longest silence is forgotten.
+/// The greatest number of SSRCs. Each restart may bring a new SSRC, so the SSRC that has been
+/// silent for longest is forgotten.
 constexpr std::size_t kMostSources = 64;
-/// Tolerance for the report's times, because arrival offsets are multiples of 1/1024 s.
+/// The tolerance for times in reports, because arrival offsets are multiples of 1/1024 s.
 constexpr Duration kTimeTolerance = 2ms;
 
 }  // namespace
@@ -52,7 +55,8 @@ void SentHistory::OnSent(std::uint32_t ssrc, std::uint16_t seq, const SentRecord
   Insert(&source, packet);
 }
 
-/// A repeated packet counts once, because feedback cannot distinguish the copies.
+/// Inserts a packet that was sent. A packet that is sent again counts once, because feedback cannot
+/// distinguish the copies.
 void SentHistory::Insert(Source* source, const Packet& packet) {
   auto& packets = source->packets;
   if (packets.empty() || packets.back().seq < packet.seq) {
@@ -67,7 +71,7 @@ void SentHistory::Insert(Source* source, const Packet& packet) {
   Trim(source);
 }
 
-/// Detects numbers that run backwards, as of a restarted payloader.
+/// Returns true if the numbers start again, as after the restart of a payloader.
 bool SentHistory::StartsAgain(Source* source, std::int64_t seq) {
   if (source->packets.empty() || seq > source->packets.back().seq) {
     source->behind = 0;
@@ -118,8 +122,8 @@ void SentHistory::ForgetSilentSource() {
   sources_.erase(silent);
 }
 
-/// Returns how many packets precede a number. Numbers ascend with few gaps, so the result is near
-/// the distance to the first number, and never above it.
+/// Returns how many packets precede `seq`. Numbers ascend with few gaps. The result is therefore
+/// near the distance from the first number to `seq`, and never above this distance.
 std::ptrdiff_t SentHistory::FirstFrom(const std::deque<Packet>& packets, std::int64_t seq) {
   if (packets.empty() || seq <= packets.front().seq) return 0;
   const auto distance = static_cast<std::ptrdiff_t>(
@@ -136,7 +140,8 @@ SentHistory::Packet* SentHistory::Find(Source* source, std::int64_t seq) {
   return it != source->packets.end() && it->seq == seq ? &*it : nullptr;
 }
 
-/// Returns false if the report has packets that were never sent, or that arrived before they left.
+/// Returns false if the report acknowledges packets that were never sent, or that arrived before
+/// they were sent.
 bool SentHistory::Plausible(Time now, Source* source, const rtcp::SsrcReport& block) const {
   const std::int64_t newest = source->packets.back().seq;
   const std::int64_t oldest = source->packets.front().seq;
@@ -171,7 +176,8 @@ FeedbackResult SentHistory::OnFeedback(Time now, const rtcp::CongestionFeedback&
   if (!any_ours) return FeedbackResult::kNotOurs;
   summary->report = clock_.Unwrap(feedback.report_timestamp);
   for (const auto& [source, block] : news) Apply(now, *block, source, summary);
-  // Reports list one stream after the other; the link carried packets in the order of sending.
+  // A report lists one SSRC after the other, but the link carried the packets in the order of
+  // sending. The packets are sorted into this order.
   std::stable_sort(summary->acked.begin(), summary->acked.end(),
                    [](const AckedPacket& a, const AckedPacket& b) { return a.sent < b.sent; });
   if (!summary->acked.empty()) newest_acked_ = std::max(newest_acked_, summary->acked.back().sent);
@@ -182,8 +188,9 @@ FeedbackResult SentHistory::OnFeedback(Time now, const rtcp::CongestionFeedback&
   return nothing ? FeedbackResult::kStale : FeedbackResult::kAccepted;
 }
 
-/// Leaves out the receiver's holding time if the receiver reports it. The delay of packets from an
-/// outage says nothing about the present delay.
+/// Returns the round trip of the newest packet that shows it. If the receiver reports how long it
+/// held the acknowledgement, this time is subtracted. Packets from an outage do not count, because
+/// their delay says nothing about the current delay.
 std::optional<Duration> SentHistory::RoundTrip(Time now, const AckSummary& summary) const {
   for (auto packet = summary.acked.rbegin(); packet != summary.acked.rend(); ++packet) {
     if (packet->arrival)
@@ -241,7 +248,7 @@ void SentHistory::Acknowledge(Time now, const rtcp::PacketMetric& metric, Packet
   summary->acked.push_back(acked);
 }
 
-/// Takes the packets up to `seq` out of flight. Returns their bytes.
+/// Removes the packets up to `seq` from the bytes in flight. Returns the size of these packets.
 DataSize SentHistory::Settle(Source* source, std::int64_t seq) {
   DataSize bytes;
   if (seq <= source->highest_acked) return bytes;
@@ -309,7 +316,8 @@ void SentHistory::Expire(Time before) {
   }
 }
 
-/// Gives up the last packets of a silent SSRC: no later packet will show their loss.
+/// Gives up the last packets of an SSRC that has become silent, because no later packet of this
+/// SSRC will show that they were lost.
 void SentHistory::ExpireTails() {
   for (auto& [ssrc, source] : sources_) {
     auto packet = source.packets.begin() + FirstFrom(source.packets, source.highest_acked + 1);

@@ -24,8 +24,8 @@ struct SentRecord {
 };
 
 struct AckedPacket : SentRecord {
-  /// Arrival on the receiver's clock, unwrapped. Unset if the report has no time, and after
-  /// Expire().
+  /// The arrival time on the receiver's clock, unwrapped. It is unset if the report has no time, or
+  /// if the packet was acknowledged after Expire().
   std::optional<Time> arrival;
   Ecn arrived_ecn = Ecn::kNotEct;
   bool was_lost = false;
@@ -37,38 +37,39 @@ struct AckSummary {
   std::vector<AckedPacket> acked;  ///< in the order of sending
   std::vector<SentRecord> lost;
   Time report{};  ///< time of the report on the receiver's clock, unwrapped
-  /// Sending times of packets that an earlier report acknowledged without their CE mark.
+  /// The sending times of packets whose CE mark is in this report, although an earlier report
+  /// already acknowledged them.
   std::vector<Time> late_ce;
-  /// The draft's bytes_newly_acked: bytes up to the new highest acknowledged number of each SSRC,
-  /// lost packets included.
+  /// The draft's bytes_newly_acked: the bytes up to the new highest acknowledged number of each
+  /// SSRC, including lost packets.
   DataSize bytes_newly_acked;
   DataSize bytes_newly_acked_ce;
-  /// Round trip of the newest acknowledged packet, without the receiver's holding time if the
-  /// receiver reports that.
+  /// The round trip of the newest acknowledged packet. If the receiver reports how long it held the
+  /// acknowledgement, this time is subtracted.
   std::optional<Duration> rtt;
 };
 
 enum class FeedbackResult {
   kAccepted,     ///< counted; decisions may have changed
-  kImplausible,  ///< ignored as a whole: unknown packets, absurd times, or a flood
+  kImplausible,  ///< ignored as a whole: packets that were not sent, or impossible times
   kNotOurs,      ///< has no block for our SSRCs
   kStale,        ///< has nothing new
 };
 
-/// Records sent packets. A report is validated as a whole before it changes the records.
+/// Records sent packets. A report is checked as a whole before it changes the records.
 class SentHistory {
  public:
   void OnSent(std::uint32_t ssrc, std::uint16_t seq, const SentRecord& record);
   FeedbackResult OnFeedback(Time now, const rtcp::CongestionFeedback& feedback,
                             AckSummary* summary);
-  /// Packets sent before `before` no longer count as in flight or as lost; they may still be
-  /// acknowledged.
+  /// Gives up the packets that were sent before `before`. They no longer count as in flight or as
+  /// lost, but may still be acknowledged.
   void Expire(Time before);
 
   DataSize bytes_in_flight() const { return in_flight_; }
-  /// Sending time of the packet that has been in flight longest.
+  /// Returns the sending time of the packet that has been in flight for longest.
   std::optional<Time> oldest_in_flight() const;
-  /// Returns true if an SSRC has as many unsettled packets as its numbers can distinguish.
+  /// Returns true if an SSRC has as many packets in flight as its sequence numbers can distinguish.
   bool full() const;
   void set_max_reordering_window(Duration d) { max_reordering_window_ = d; }
   std::uint64_t foreign_blocks() const { return foreign_blocks_; }

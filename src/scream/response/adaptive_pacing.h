@@ -8,16 +8,17 @@
 
 namespace lidar::scream {
 
-/// Returns the reserve: the time from when a frame has left to the end of its period. If marks
-/// work, a frame may queue as long as packets stay unmarked.
+/// Returns the reserve: the time from the end of a frame's sending to the end of its period. If
+/// marks work, a frame may cause a queue, as long as the packets in it stay unmarked.
 inline Duration PacingReserve(const Parameters& p, const PathModel& path, Time now) {
   if (!path.L4sWorks(now)) return p.pacing_reserve;
   return std::clamp(FromSeconds(Seconds(path.marking_onset()) * p.onset_reserve),
                     p.shortest_pacing_reserve, p.pacing_reserve);
 }
 
-/// Returns PACKET_PACING_HEADROOM, or the headroom that ends a frame's sending `reserve` before its
-/// period ends. On a full link each frame makes a queue as long as `reserve`, and it drains again.
+/// Returns PACKET_PACING_HEADROOM or, with the extension, the headroom at which the sending of a
+/// frame ends `reserve` before its period ends. On a full link, each frame causes a queue as long
+/// as `reserve`, which then drains.
 inline double PacingHeadroom(const Parameters& p, Duration frame_period, Duration reserve) {
   if (!p.extensions.capacity) return p.packet_pacing_headroom;
   const double longest = std::min(1.0, Seconds(frame_period) / Seconds(p.long_frame_period));
@@ -25,8 +26,8 @@ inline double PacingHeadroom(const Parameters& p, Duration frame_period, Duratio
                              longest * p.min_pacing_reserve, p.max_pacing_reserve));
 }
 
-/// Returns the pace near the streams' maximum. It stays within the known capacity, because
-/// otherwise the start of each frame would be marked.
+/// Returns the limit of the pace near the streams' maximum. The limit is below the measured
+/// capacity, because otherwise the start of each frame would be marked.
 inline DataRate RelaxedPace(const Parameters& p, const PathModel& path) {
   constexpr double kUnmarked = 0.9;
   const DataRate known = path.measured_capacity();
@@ -34,9 +35,10 @@ inline DataRate RelaxedPace(const Parameters& p, const PathModel& path) {
   return known * kUnmarked;
 }
 
-/// Returns the pace of a backlog: the window's own rate, which exceeds the lowered target, limited
-/// by the acknowledged rate. After a drop of the capacity the last round trips measured a queue
-/// that is gone, so the link's time for the bytes in flight is used.
+/// Returns the pace at which a backlog is sent. It is the window's own rate, which exceeds the
+/// lowered target, limited by the acknowledged rate or the measured capacity. After a drop of the
+/// capacity, the last round trips were measured with a queue that has drained since. The time that
+/// the link takes for the bytes in flight is then used instead.
 inline DataRate DrainRate(const Parameters& p, Time now, DataSize ref_wnd, DataSize in_flight,
                           const PathModel& path) {
   constexpr double kMargin = 1.25;

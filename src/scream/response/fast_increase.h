@@ -8,8 +8,9 @@
 
 namespace lidar::scream {
 
-/// A round is a round trip, or a frame period if that is longer: marks of a frame source come once
-/// a frame. Growth starts after a few rounds without congestion and increases with each.
+/// Fast growth starts after a few rounds without congestion, and increases with each further round.
+/// A round is a round trip, or a frame period if that is longer, because the marks of a source of
+/// frames arrive once per frame.
 class FastIncrease {
  public:
   explicit FastIncrease(const Parameters& p) : p_(p) {}
@@ -24,16 +25,16 @@ class FastIncrease {
     round_start_ = now;
     ++rounds_;
   }
-  /// Call it after a gap or an outage: the window then grows as at the start of a flow.
+  /// Call it after a gap or an outage. The window then grows as it does at the start of a flow.
   void Restart() { starting_ = true; }
-  /// Returns the fraction of the acknowledged bytes by which the window may grow. It falls with the
-  /// queue's length.
+  /// Returns the fraction of the acknowledged bytes by which the window may grow. The fraction is
+  /// smaller if the queue is longer.
   double growth(Time now, const PathModel& path, Duration frame_period) const {
     if (!p_.extensions.capacity) return 0;
     const int bold = std::max(0, rounds_ - p_.fast_increase_rounds);
     const double step = path.L4sWorks(now) ? p_.fast_increase_step : p_.fast_increase_step_unmarked;
-    // Rounds of rare frames are long, and an excess stays queued for a round, so the start is
-    // slower.
+    // If frames are rare, a round is long, and data in excess stay queued for a round. The start is
+    // therefore slower.
     const double round = Seconds(path.Round(frame_period));
     const double start =
         p_.fast_increase_max * std::clamp(Seconds(p_.long_frame_period) / round, 0.5, 1.0);

@@ -10,8 +10,9 @@
 
 namespace lidar::scream {
 
-/// A gap is a time in which the link carries almost nothing, as at a handover or the edge of a
-/// cell. The window's reductions in a gap say nothing about the link after it.
+/// Restores the window after a gap. A gap is a time in which the link carries almost nothing, for
+/// example at a handover or at the edge of a cell. The reductions of the window during a gap say
+/// nothing about the link after the gap.
 class GapRecovery {
  public:
   struct Restart {
@@ -22,7 +23,7 @@ class GapRecovery {
 
   explicit GapRecovery(const Parameters& parameters) : p_(parameters) {}
 
-  /// Call it after each report. Returns the state to continue with once the gap is over.
+  /// Call it after each report. Returns the state to continue with if a gap is over.
   std::optional<Restart> Update(Time now, const PathModel& path, DataSize ref_wnd) {
     if (!p_.extensions.gaps) return std::nullopt;
     const auto rate = path.busy_run().latest_capacity();
@@ -47,14 +48,14 @@ class GapRecovery {
   }
   /// Call it while no acknowledgement comes back.
   void OnSilence(Time now) { NoteSign(now); }
-  /// Call it after a change of route, or a pause of the caller. Forgets the state from before a
-  /// gap.
+  /// Call it after a change of the route, or after a pause of the caller. Forgets the state from
+  /// before a gap.
   void Reset() {
     before_.reset();
     last_sign_.reset();
   }
 
-  /// Rate of the remembered window; unset if no window is remembered.
+  /// Returns the rate of the remembered window, or nothing if no window is remembered.
   std::optional<DataRate> rate_before() const {
     return before_ ? std::optional(before_->rate) : std::nullopt;
   }
@@ -65,12 +66,13 @@ class GapRecovery {
     Restart state;
     DataRate rate;
   };
-  /// Returns true if `rate`, that of the latest arrivals, is far below the earlier capacity.
+  /// Returns true if `rate`, which the latest arrivals show, is far below the capacity before the
+  /// gap.
   bool Slow(std::optional<DataRate> rate) const {
     return before_ && rate && *rate < before_->rate * kGapPart;
   }
-  /// Call it if the link was slow after a window was restored: lowers the remembered window to the
-  /// restored one, and the rate in the same ratio.
+  /// Call it if the link is slow again after a window was restored. Lowers the remembered window to
+  /// the restored one, and lowers the remembered rate in the same ratio.
   void BelieveLess() {
     const auto tried = std::exchange(unproven_, std::nullopt);
     if (!tried || *tried >= before_->state.window) return;
@@ -86,15 +88,17 @@ class GapRecovery {
     before_ = Before{{ref_wnd, path.rtt().smoothed(), path.l4s_alpha().value()},
                      ref_wnd / path.rtt().smoothed() / p_.target_rate_divisor};
   }
-  /// Returns the window for the measured rate of packets behind the gap; nothing while the rate is
-  /// low.
+  /// Returns the window for the rate at which packets arrive after the gap, or nothing while this
+  /// rate is low.
   std::optional<DataSize> Measured(DataRate rate, const PathModel& path) const {
     if (rate < before_->rate * kGapPart) return std::nullopt;
     return rate * path.rtt().min() * p_.target_rate_divisor;
   }
-  /// Returns the next larger window while no queue shows the link's rate.
+  /// Returns the next step from `ref_wnd` towards the remembered window, for a time in which no
+  /// queue shows the rate of the link. Returns nothing if it is too early for this step.
   std::optional<DataSize> Unproven(Time now, const PathModel& path, DataSize ref_wnd) const {
-    // Packets before the newest may have marks from the gap.
+    // Only the newest packet is checked for a mark, because packets before it may have marks from
+    // the gap.
     const bool calm = path.queue_delay().qdelay() < p_.busy_qdelay && !path.newest_marked();
     if (!calm || now - last_restart_ < path.rtt().min()) return std::nullopt;
     return ref_wnd + (before_->state.window - ref_wnd) * kUnprovenPart;
@@ -102,11 +106,13 @@ class GapRecovery {
 
   /// A link that carries less than this part of its earlier capacity is in a gap.
   static constexpr double kGapPart = 0.25;
-  /// The state from before a gap is forgotten this long after the last sign of the gap.
+  /// The state from before a gap is forgotten if the last sign of the gap is older than this.
   static constexpr Duration kLongestMemory = 3s;
-  /// A gap of this length shows the link's new capacity, so the state from before it is forgotten.
+  /// A gap that is longer than this shows the new capacity of the link, so the state from before
+  /// the gap is forgotten.
   static constexpr Duration kLongestGap = 10s;
-  /// Part of the missing window that is restored each round trip while nothing measures the link.
+  /// The fraction of the missing window that is restored in each round trip, while nothing shows
+  /// the rate of the link.
   static constexpr double kUnprovenPart = 0.5;
   static constexpr double kRestoredPart = 0.9;
   const Parameters& p_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Draft section "Link layer losses and rate policers", and extension evidence: separates losses of
-// a radio from congestion.
+// Draft section "Link layer losses and rate policers", and extension evidence: distinguishes losses
+// on a radio link from congestion.
 #pragma once
 #include <algorithm>
 
@@ -9,8 +9,9 @@
 
 namespace lidar::scream {
 
-/// Returns true if losses show congestion. With the extension, losses at a short queue also show
-/// congestion, but a path that carries ECT(1) may have a higher rate of other losses.
+/// Returns true if losses show congestion, because the queue is long or losses are frequent. With
+/// the extension evidence, a shorter queue is enough. On a path that carries ECT(1), the extension
+/// tolerates a higher rate of losses without a queue.
 inline bool LossIsCongestion(const Parameters& p, const PathModel& path) {
   const QueueDelay& queue = path.queue_delay();
   if (!p.link_layer_loss || queue.qdelay_avg() > p.qdelay_target_lo / 4) return true;

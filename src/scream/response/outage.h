@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Extension gaps: handles silence of the receiver, and the restart after it.
+// Extension gaps: handles a silent receiver, and the restart after the silence.
 #pragma once
 #include <algorithm>
 #include <optional>
@@ -13,11 +13,11 @@ class Outage {
  public:
   explicit Outage(const Parameters& parameters) : p_(parameters) {}
 
-  /// Silence counts from now. Call it when the first packet after a pause leaves, and when packets
-  /// in flight are given up.
+  /// Measures the silence from now on. Call it when the first packet after a pause is sent, and
+  /// when packets in flight are given up.
   void Restart(Time now) { last_feedback_ = now; }
-  /// Call it while packets are in flight. Returns a smaller window each time that the silence is
-  /// too long for these round trips and frames.
+  /// Call it while packets are in flight. Returns a smaller window each time that the receiver has
+  /// been silent for too long, compared with `s_rtt` and `frame_period`.
   std::optional<DataSize> OnTimer(Time now, DataSize ref_wnd, Duration s_rtt,
                                   Duration frame_period) {
     const Duration expected = 2 * std::max(frame_period, p_.feedback_interval);
@@ -28,7 +28,7 @@ class Outage {
     if (!window_before_) window_before_ = ref_wnd;
     return ref_wnd * kBackoff;
   }
-  /// Call it when packets are acknowledged. Returns the window for the restart if an outage ends.
+  /// Call it when packets are acknowledged. If an outage ends, returns the window for the restart.
   std::optional<DataSize> OnFeedback(Time now) {
     last_feedback_ = now;
     const auto before = std::exchange(window_before_, std::nullopt);
@@ -36,13 +36,13 @@ class Outage {
   }
 
   bool active() const { return window_before_.has_value(); }
-  /// Time since the last acknowledgement, or since the first packet that waits for one.
+  /// Returns the time since the last acknowledgement, or since the first packet that waits for one.
   Duration Quiet(Time now) const { return now - last_feedback_; }
-  /// Time without acknowledgements in an outage; 0 without an outage.
+  /// Returns the time without acknowledgements during an outage, or 0 if there is no outage.
   Duration Silence(Time now) const { return active() ? Quiet(now) : Duration{0}; }
 
  private:
-  /// The receiver's silence is an outage only if it exceeds two round trips by this time.
+  /// The receiver's silence is an outage only if it exceeds two round trips by at least this time.
   static constexpr Duration kOutage = 200ms;
   static constexpr double kBackoff = 0.5;
   static constexpr double kRestart = 0.5;

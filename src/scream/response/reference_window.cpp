@@ -6,13 +6,15 @@
 namespace lidar::scream {
 namespace {
 
-/// Slope of the reaction over the distance to the inflection point, and least values of the scales.
+/// The slope of the reaction as a function of the distance to the inflection point, and the least
+/// values of the scales.
 constexpr double kInflectionSlope = 8;
 constexpr double kInflectionMin = 0.1;
 constexpr double kScaleMin = 0.25;
 constexpr double kMostBackoff = 0.5;  // alpha / 2 if each packet is marked
 constexpr double kJitterIncreaseMin = 0.1;
-/// Round trips without congestion after which the window may exceed the bytes in flight by far.
+/// The number of round trips without congestion after which the window may far exceed the bytes in
+/// flight.
 constexpr double kLongUncongestedRtts = 100;
 
 double Bytes(DataSize size) { return static_cast<double>(size.bytes()); }
@@ -72,7 +74,7 @@ RateReason ReferenceWindow::Detect(Time now, const CongestionSignals& s) {
     return RateReason::kIncrease;
   if (std::exchange(loss_detected_, false) && s.loss_is_congestion) return RateReason::kLoss;
   if (data_units_marked_) return RateReason::kCe;
-  // The extension capacity reacts to a queue that shrinks, too.
+  // A queue that shrinks causes a reaction, too, if the extension capacity is on.
   const bool falls = s.qdelay_avg_falls && !p_.extensions.capacity;
   if (s.qdelay_avg > p_.qdelay_target_lo / 2 && !falls) return RateReason::kDelay;
   return RateReason::kIncrease;
@@ -94,7 +96,9 @@ void ReferenceWindow::Reduce(Time now, RateReason reason, const CongestionSignal
   ForgetSigns();
 }
 
-/// Sets the inflection point. The reductions of one congestion do not lower it step by step.
+/// Sets the inflection point to the window before a reduction. If the window has not grown since
+/// the last reduction, keeps the inflection point, so that the reductions of one congestion do not
+/// lower it step by step.
 void ReferenceWindow::NoteInflectionPoint(Time now, Duration s_rtt) {
   const bool held = Ratio(now - ref_wnd_i_update_time_, s_rtt) > p_.ref_wnd_i_update_max_hold_rtts;
   if (ref_wnd_ <= ref_wnd_lowest_ * p_.ref_wnd_i_update_growth && !held) return;
@@ -129,8 +133,8 @@ double ReferenceWindow::UndershootScale(const CongestionSignals& s) const {
   return low ? p_.backoff_scale_low_target_rate : 1;
 }
 
-/// Extension capacity: returns the fast growth. It is slower near the measured capacity, or near
-/// the inflection point if no capacity is measured.
+/// Extension capacity: returns the fast growth. It is slower near the measured capacity or, if no
+/// capacity is measured, near the inflection point.
 double ReferenceWindow::FastIncrement(const CongestionSignals& s, double scl) const {
   const auto capacity = Bytes(s.capacity_window);
   double scale = ref_wnd_ > ref_wnd_i_ ? InflectionScale(p_.fast_increase_slope) : scl;

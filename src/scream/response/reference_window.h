@@ -9,9 +9,9 @@
 
 namespace lidar::scream {
 
-/// Extension: least growth and reaction near the inflection point, relative to their full values.
-/// With a backoff above 1 a flow gives way faster than the draft, but never by more than half of
-/// its window.
+/// Extension company: the least growth and reaction near the inflection point, relative to their
+/// full values. A flow whose `backoff` is above 1 gives way faster than a flow of the draft, but
+/// never by more than half of its window.
 struct Boldness {
   double growth = 0.25;
   double backoff = 0.25;
@@ -32,13 +32,13 @@ struct CongestionSignals {
   bool qdelay_avg_falls = false;
   double ref_wnd_delay_scale = 1;
   Boldness boldness;
-  /// Extension `capacity`: a reaction may come this much before the end of the round trip, because
-  /// the next report may come long after it.
+  /// Extension capacity: the time by which a reaction may come before the end of the round trip.
+  /// The next report may come long after the end of the round trip, which would delay the reaction.
   Duration earliness{0};
   Duration s_rtt{0};
   DataSize max_bytes_in_flight;
   DataSize max_bytes_in_flight_prev;
-  /// Window that fills the known capacity; 0: unknown.
+  /// The window that fills the measured capacity, or 0 if the capacity is unknown.
   DataSize capacity_window;
   DataSize bytes_newly_acked;
   DataSize bytes_newly_acked_ce;
@@ -55,30 +55,30 @@ class ReferenceWindow {
   /// Updates the window after a report. Reduces it at most once every min(VIRTUAL_RTT, s_rtt), then
   /// increases it. Returns the reason of the reduction, or kIncrease.
   RateReason Update(Time now, const CongestionSignals& signals);
-  /// Sets the window outside of the draft's rules; never below MIN_REF_WND.
+  /// Sets the window independently of the draft's rules, but never below MIN_REF_WND.
   void Set(DataSize window);
-  /// Sets the window whose target is `rate`: the draft leaves the start open. Drops earlier marks
-  /// and losses that still wait for a reaction.
+  /// Sets the window whose target is `rate`. The draft does not define the window at the start.
+  /// Drops earlier marks and losses to which there was no reaction yet.
   void Start(DataRate rate, Duration s_rtt);
-  /// Call it when the link's capacity has fallen to what `window` fills. The draft's own reaction
-  /// then waits.
+  /// Call it when the link's capacity has fallen. Sets `window`, which fills the link. The draft's
+  /// own reaction then waits.
   void Drop(Time now, DataSize window);
-  /// Sets the window after a gap or an outage. Drops marks and losses that still wait for a
-  /// reaction, because they come from that gap or outage.
+  /// Sets the window after a gap or an outage. Drops marks and losses to which there was no
+  /// reaction yet, because they come from that gap or outage.
   void Restart(DataSize window);
   void Limit(DataSize max) { Set(std::min(max, ref_wnd())); }
 
   DataSize ref_wnd() const { return DataSize::Bytes(static_cast<std::int64_t>(ref_wnd_)); }
   DataSize ref_wnd_i() const { return DataSize::Bytes(static_cast<std::int64_t>(ref_wnd_i_)); }
-  /// Target bitrate by the draft's section "Media Rate Control", without its limits.
-  /// `queue_compensation` is rate_adjust_factor + frame_size_dev.
+  /// Returns the target bitrate by the draft's section "Media Rate Control", without the limits of
+  /// that section. `queue_compensation` is rate_adjust_factor + frame_size_dev.
   DataRate TargetBitrate(Duration s_rtt, double queue_compensation) const;
   Time last_reaction_to_congestion_time() const { return last_reaction_to_congestion_time_; }
   Time last_congestion_detected_time() const { return last_congestion_detected_time_; }
   Time last_drop_time() const { return last_drop_time_; }
 
  private:
-  /// Drops marks and losses that still wait for a reaction.
+  /// Drops marks and losses to which there was no reaction yet.
   void ForgetSigns() { loss_detected_ = data_units_marked_ = false; }
   double ref_wnd_ratio() const;
   double InflectionScale(double slope) const;
@@ -94,7 +94,7 @@ class ReferenceWindow {
   const Parameters& p_;
   double ref_wnd_;
   double ref_wnd_i_ = 1;
-  double ref_wnd_lowest_ = 0;  // after the last reduction
+  double ref_wnd_lowest_ = 0;  // ref_wnd_ after the last reduction
   Time ref_wnd_i_update_time_{};
   bool loss_detected_ = false;      // since the last reaction
   bool data_units_marked_ = false;  // since the last reaction

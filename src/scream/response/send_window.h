@@ -13,9 +13,9 @@ class SendWindow {
   explicit SendWindow(const Parameters& parameters) : p_(parameters) {}
 
   void OnSent(Time now) { last_sent_ = now; }
-  /// Returns the limit of bytes in flight. With extension `capacity` the limit is a little above
-  /// the window on an L4S path, and equal to it while a queue lasts. Bytes that have arrived but
-  /// are not reported yet come on top.
+  /// Returns the limit of bytes in flight. With the extension capacity, the limit is a little above
+  /// the window on an L4S path, and equal to the window while a queue lasts. Bytes that have
+  /// arrived but are not reported yet are added to the limit.
   DataSize Max(Time now, DataSize ref_wnd, const PathModel& path) const {
     const double range = p_.ref_wnd_overhead_max - p_.ref_wnd_overhead_min;
     double overhead = p_.ref_wnd_overhead_min + range * path.queue_delay().ref_wnd_delay_scale();
@@ -26,8 +26,8 @@ class SendWindow {
     }
     return std::max(ref_wnd * overhead, 2 * p_.mss);
   }
-  /// Returns the time from which a packet of `size` may leave. A closed window passes packets at
-  /// RATE_PACE_MIN, so that lost feedback cannot stop the sender.
+  /// Returns the time from which on a packet of `size` may be sent. If the window is closed,
+  /// packets are still sent at RATE_PACE_MIN, so that the loss of feedback cannot stop the sender.
   Time Opens(DataSize size, DataSize in_flight, DataSize max) const {
     const bool fits = in_flight.bytes() == 0 || in_flight + size <= max;
     return fits ? Time{} : last_sent_ + size / p_.rate_pace_min;

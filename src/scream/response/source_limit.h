@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The extension `capacity`: the window while the streams' maximum, not the link, limits the rate.
+// The extension capacity: the window while the maximum bitrate of the streams, and not the link,
+// limits the rate.
 #pragma once
 #include "src/scream/model/path_model.h"
 #include "src/scream/parameters.h"
@@ -14,8 +15,8 @@ inline DataSize BurstWindow(const Parameters& p, const PathModel& path, const St
          (p.target_rate_divisor + streams.queue_compensation()) * p.packet_pacing_headroom;
 }
 
-/// Returns true if the window delays bursts at the maximum bitrate. A window that suffices for
-/// frames at an even pace may delay whole scans, and data queued in a gap.
+/// Returns true if the window delays bursts at the maximum bitrate. A window that is large enough
+/// for frames at an even pace may still delay whole scans, and data that were queued in a gap.
 inline bool HoldsBurstsBack(const Parameters& p, const PathModel& path, const Streams& streams,
                             DataSize ref_wnd) {
   return p.extensions.capacity && streams.max_bitrate() < DataRate::Infinite() &&
