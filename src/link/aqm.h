@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Active queue management: decides which packets a growing queue marks or drops.
+// Active queue management: decides which packets are marked or dropped when a queue grows.
 #pragma once
 #include <memory>
 
@@ -11,15 +11,15 @@ namespace lidar::link {
 
 enum class Verdict { kPass, kMark, kDrop };
 
-/// Called once a packet, as the packet leaves the queue. Only packets whose ECN bits allow it are
-/// marked.
+/// OnDequeue() is called once for each packet, when the packet leaves the queue. Only packets whose
+/// ECN bits allow it are marked.
 class Aqm {
  public:
   virtual ~Aqm() = default;
   virtual Verdict OnDequeue(Time now, Duration sojourn, const Packet& packet) = 0;
 };
 
-/// Marks no packet: only the queue limit drops packets.
+/// Marks no packets. Only the limit of the queue drops packets.
 std::unique_ptr<Aqm> NoAqm();
 /// Marks every ECT(1) packet that waited longer than `threshold`.
 std::unique_ptr<Aqm> StepAqm(Duration threshold);

@@ -27,7 +27,7 @@ std::unique_ptr<Queue> MakeQueue(const AqmConfig& config, Random random) {
   return std::make_unique<FifoQueue>(MakeAqm(config, random));
 }
 
-/// Time::max() stands for never: larger sums become Time::max().
+/// Returns t + d, or Time::max() if the sum is larger. Time::max() means never.
 Time Plus(Time t, Duration d) { return d < Time::max() - t ? t + d : Time::max(); }
 
 }  // namespace
@@ -39,7 +39,7 @@ bool Bottleneck::Later::operator()(const Pending& a, const Pending& b) const {
 Bottleneck::Bottleneck(const BottleneckConfig& config)
     : config_(config),
       loss_random_(config.seed),
-      // Losses and marks have separate random sequences, so losses do not shift the marks.
+      // Losses and marks have separate random sequences, so that losses do not change the marks.
       queue_(MakeQueue(config.aqm, Random(config.seed + 1))),
       path_(config.path, config.seed + 2),
       limit_(config.limit.bytes),
@@ -47,10 +47,11 @@ Bottleneck::Bottleneck(const BottleneckConfig& config)
 
 bool Bottleneck::Full(Time now, DataSize size) {
   const DataRate rate = config_.capacity.RateAt(now - config_.origin);
-  // A gap of the capacity keeps the last limit: a real buffer does not shrink to nothing.
+  // The last limit remains during a gap of the capacity, because a real buffer does not shrink to
+  // nothing.
   if (config_.limit.time < Duration::max() && rate > DataRate{} && rate < DataRate::Infinite())
     limit_ = std::min(config_.limit.bytes, rate * config_.limit.time);
-  // An empty queue takes any packet.
+  // An empty queue accepts any packet.
   return !queue_->empty() && size > limit_ - queue_->size();
 }
 
@@ -99,7 +100,7 @@ void Bottleneck::Advance(Time now) {
     const Time start = std::max(free_at_, queue_->Oldest());
     if (start > now) return;
     if (config_.capacity.RateAt(start - config_.origin) <= DataRate{}) {
-      // Packets stay in the queue through a gap, so their sojourn goes on.
+      // Packets stay in the queue during a gap, so their sojourn continues.
       free_at_ = At(config_.capacity.NextChange(start - config_.origin));
       continue;
     }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// One direction of a path: loss, a queue before a link of changing capacity, propagation.
+// One direction of a path: random loss, a queue before a link of changing capacity, and
+// propagation.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -25,19 +26,19 @@ struct AqmConfig {
   Pi2Config pi2;  // for kPi2 and kDualPi2, which ignore the fields above
 };
 
-/// A limit in bytes, in time or in both. The present capacity turns the time into bytes.
+/// A limit in bytes, in time, or in both. The current capacity converts the time to bytes.
 struct QueueLimit {
   DataSize bytes = DataSize::Infinite();
   Duration time = Duration::max();
 };
 
 struct BottleneckConfig {
-  Time origin;  // start of `capacity`
+  Time origin;  // time 0 of `capacity`
   Capacity capacity = Capacity::Constant(DataRate::Infinite());
   QueueLimit limit;
   AqmConfig aqm;
-  double loss = 0;    // probability, drawn as a packet enters
-  Duration delay{0};  // propagation
+  double loss = 0;    // probability that a packet is lost before the queue
+  Duration delay{0};  // propagation delay
   PathConfig path;
   std::uint64_t seed = 1;
 };
@@ -53,15 +54,17 @@ struct BottleneckStats {
   DataSize delivered_size;  // without duplicates
 };
 
-/// Times passed to calls must not decrease.
+/// The times that are passed to the methods must not decrease.
 class Bottleneck {
  public:
   explicit Bottleneck(const BottleneckConfig& config);
 
   void Enqueue(Time now, const Packet& packet);
-  /// Returns the time of the next call of Deliver(); Time::max() if no packet is under way.
+  /// Returns the time at which Deliver() must be called next, or Time::max() if no packet is in
+  /// flight.
   Time NextEventTime() const;
-  /// Returns the packets that arrived or were dropped up to `now`, in the order of these times.
+  /// Returns the packets that have arrived or were dropped up to `now`, in the order of these
+  /// times.
   std::vector<Outcome> Deliver(Time now);
 
   DataSize queued() const { return queue_->size(); }
@@ -71,7 +74,7 @@ class Bottleneck {
  private:
   struct Pending {
     Outcome outcome;
-    std::uint64_t order;  // breaks ties of time
+    std::uint64_t order;  // order of packets with equal times
   };
   struct Later {
     bool operator()(const Pending& a, const Pending& b) const;
@@ -88,7 +91,7 @@ class Bottleneck {
   std::unique_ptr<Queue> queue_;
   Path path_;
   DataSize limit_ = DataSize::Infinite();
-  Time free_at_;  // when the transmitter becomes free
+  Time free_at_;  // time at which the transmitter becomes free
   std::priority_queue<Pending, std::vector<Pending>, Later> pending_;
   std::uint64_t order_ = 0;
   BottleneckStats stats_;

@@ -33,7 +33,8 @@ struct TraceLine {
   DataRate rate;
 };
 
-/// Returns nothing for a line without content, and leaves `error` empty.
+/// Parses a line of a trace. Returns nothing for a line without content, and leaves `error` empty.
+/// If the line is wrong, sets `error` and returns nothing.
 std::optional<TraceLine> ParseLine(std::string_view line, std::string* error) {
   line = line.substr(0, line.find('#'));
   const auto first = NextWord(&line);
@@ -165,7 +166,8 @@ Duration Capacity::Finish(Duration start, DataSize size) const {
   const bool never = period_ > Duration{0} && !(bits_per_period_ > 0);
   while (true) {
     if (bits > bits_per_period_ && bits_per_period_ > 0 && t >= last_outage_) {
-      // Skips whole periods at once: a tiny rate in a tiny period would take for ever.
+      // Skips whole periods at once, because a tiny rate with a tiny period would otherwise take
+      // for ever.
       const double periods = std::floor(bits / bits_per_period_);
       if (periods * Seconds(period_) > 9e9) return Duration::max();
       t += period_ * static_cast<std::int64_t>(periods);

@@ -12,32 +12,37 @@
 
 namespace lidar::link {
 
-/// A rate that is constant between changes, from time 0 of the link. It repeats, or keeps its last
-/// rate for ever. A rate of zero is a gap: no packet moves until its end.
+/// A rate over time, from time 0 of the link, which is constant between changes. The rates repeat,
+/// or the last rate lasts for ever. A rate of zero is a gap: no packet moves until the end of the
+/// gap.
 class Capacity {
  public:
   static Capacity Constant(DataRate rate);
-  /// Has each rate for the time `each`. Afterwards it repeats all rates, or keeps the last one.
+  /// Returns a capacity that has each of `rates` for the time `each`. It then repeats all rates, or
+  /// keeps the last rate.
   static Capacity Steps(const std::vector<DataRate>& rates, Duration each, bool repeat = false);
-  /// Parses a line `time_s rate_mbps` for each change, with ascending times; `#` starts a comment.
-  /// The first rate holds from 0. In a repeating trace the last rate lasts as long as the rate
-  /// before it. Returns nothing for other text; `error` then has the place and the reason.
+  /// Parses a text with one line `time_s rate_mbps` for each change, with ascending times. `#`
+  /// starts a comment. The first rate applies from time 0. In a repeating trace, the last rate
+  /// lasts as long as the rate before it. If the text is wrong, sets `error` to the line and the
+  /// reason, and returns nothing.
   static std::optional<Capacity> ParseTrace(std::string_view text, bool repeat, std::string* error);
 
-  /// Returns the same capacity from `start` on. In a repeating capacity, the part before `start`
-  /// comes last.
+  /// Returns the part of the capacity from `start` on, with `start` as its time 0. In a repeating
+  /// capacity, the part before `start` comes last.
   Capacity StartingAt(Duration start) const;
 
-  /// Sets the rate to 0 from `from` to `until`, which are link times and do not repeat.
+  /// Sets the rate to 0 from `from` to `until`. Both are times of the link, and the outage does not
+  /// repeat.
   Capacity& AddOutage(Duration from, Duration until);
 
   DataRate RateAt(Duration t) const;
-  /// Returns the first time after `t` at which the rate may change, or Duration::max() for never.
+  /// Returns the first time after `t` at which the rate may change, or Duration::max() if it never
+  /// changes.
   Duration NextChange(Duration t) const;
-  /// Returns the time at which the last bit of `size` leaves if the first leaves at `start`, or
-  /// Duration::max() for never.
+  /// Returns the time at which the last bit of `size` is sent if the first bit is sent at `start`,
+  /// or Duration::max() if that never happens.
   Duration Finish(Duration start, DataSize size) const;
-  /// Returns the bytes that the link carries from `from` to `until`.
+  /// Returns the number of bytes that the link can carry from `from` to `until`.
   DataSize Between(Duration from, Duration until) const;
 
   static constexpr std::size_t kMaxChanges = 1000000;

@@ -9,7 +9,7 @@
 
 namespace lidar::link {
 
-/// Returns the times at which the capacity rises again from nearly nothing.
+/// Returns the times at which a gap ends, because the capacity rises again from nearly nothing.
 std::vector<Duration> EndsOfGaps(const Capacity& capacity, Duration duration);
 
 /// A packet as it enters the link.
@@ -25,10 +25,10 @@ struct RecoveryConfig {
   double share = 0.8;
 };
 
-/// Returns the time from the end of each gap until the sender has recovered [s]. A sender has
-/// recovered when it uses, for a tenth of a second, `share` of what the link can carry and the
-/// source can use. The time is at most 5 s, and ends with the next gap. A gap is left out if the
-/// next one begins within 0.2 s.
+/// Returns, for each gap, the time from its end until the sender has recovered [s]. A sender has
+/// recovered when it uses, for a tenth of a second, the fraction `share` of what the link can carry
+/// and the source can use. The time is at most 5 s, and is cut off at the next gap. A gap is left
+/// out if the next gap begins within 0.2 s.
 std::vector<double> RecoveryAfterGaps(const Capacity& capacity,
                                       const std::vector<SentPacket>& packets,
                                       const RecoveryConfig& config);

@@ -60,8 +60,8 @@ class Sender {
     bool dropped = false;
   };
 
-  /// Returns false for slices of dropped scans. A scan can be dropped only when its first bit would
-  /// leave; otherwise it is finished.
+  /// Returns false for slices of dropped scans. A scan is dropped only before its first bit is
+  /// sent. Otherwise the scan is finished.
   bool IsWanted(const Slice& slice, double now) {
     Scan& scan = scans_[slice.scan];
     const bool begins = slice.first && slice.bits_left >= bits_;
@@ -79,23 +79,23 @@ class Sender {
   }
 
   OracleConfig config_;
-  double period_;  // of the slices [s]
-  double bits_;    // of a slice
+  double period_;  // time between slices [s]
+  double bits_;    // bits of a slice
   std::vector<Scan> scans_;
   std::deque<Slice> queue_;
   std::uint64_t made_ = 0;
   OracleResult result_;
 };
 
-/// The links, each behind a pacer that lets out what the link carried `delay` earlier. A slice is
-/// whole when both pacer and link have finished it.
+/// The links, each behind a pacer that sends at the rate which the link had `delay` earlier. A
+/// slice is delivered when both the pacer and the link have finished it.
 class PacedLinks {
  public:
   PacedLinks(const std::vector<Capacity>& links, Duration delay)
       : links_(links), delay_(delay), free_(links.size()), ends_(links.size()) {}
 
-  /// Sends a slice that is made at `now`. Returns the time of its delivery, or nothing if no link
-  /// delivers it by `deadline`.
+  /// Sends a slice that is made at `now`. Returns the time at which it is delivered, or nothing if
+  /// no link delivers it by `deadline`.
   std::optional<Duration> Send(Duration now, Duration deadline, DataSize size, Bonding bonding) {
     for (std::size_t i = 0; i < links_.size(); ++i) ends_[i] = Ends(i, now, size);
     const auto first = std::min_element(
@@ -122,8 +122,8 @@ class PacedLinks {
 
   const std::vector<Capacity>& links_;
   Duration delay_;
-  std::vector<Times> free_;  // when pacers and links become free
-  std::vector<Times> ends_;  // of the slice
+  std::vector<Times> free_;  // times at which pacers and links become free
+  std::vector<Times> ends_;  // times at which pacers and links finish the slice
 };
 
 bool IsEmpty(const OracleConfig& c) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Packets as the link model sees them, and their fates.
+// Packets in the link model, and their fates.
 #pragma once
 #include <cstdint>
 
@@ -10,9 +10,9 @@
 namespace lidar::link {
 
 struct Packet {
-  DataSize size;  // with IP header
+  DataSize size;  // including the IP header
   Ecn ecn = Ecn::kNotEct;
-  std::uint64_t id = 0;  // the caller's; the model does not use it
+  std::uint64_t id = 0;  // set by the caller; the model does not use it
 };
 
 enum class Fate : std::uint8_t {
@@ -22,8 +22,8 @@ enum class Fate : std::uint8_t {
   kAqmDropped  // an AQM dropped it, because it could not mark it
 };
 
-/// A packet that arrived or was dropped. `sojourn` runs from its arrival in the queue to its
-/// transmission or drop.
+/// A packet that arrived or was dropped. `sojourn` is the time from the packet's arrival in the
+/// queue to its transmission or drop.
 struct Outcome {
   Packet packet;  // with its final ECN bits
   Fate fate = Fate::kDelivered;

@@ -6,14 +6,15 @@
 namespace lidar::link {
 namespace {
 
-/// The controller restarts after a link was idle for this time.
+/// The controller restarts if the link was idle for this time.
 constexpr Duration kForget = std::chrono::seconds{1};
 
 bool IsL4s(Ecn ecn) { return ecn == Ecn::kEct1 || ecn == Ecn::kCe; }
 
 Verdict Signal(Ecn ecn) { return ecn == Ecn::kNotEct ? Verdict::kDrop : Verdict::kMark; }
 
-/// RFC 9332, section 2.4: the classic signal is the square of the base probability.
+/// Returns the classic signal, whose probability is the square of the base probability (RFC 9332,
+/// section 2.4).
 Verdict Classic(Ecn ecn, double p, Random* random) {
   return random->Chance(p * p) ? Signal(ecn) : Verdict::kPass;
 }

@@ -26,9 +26,10 @@ class Queue {
  public:
   virtual ~Queue() = default;
   virtual void Push(const Waiting& waiting) = 0;
-  /// Returns the next packet for a transmitter that is free at `now`. The queue must not be empty.
+  /// Removes the next packet and returns it. The transmitter is free at `now`. The queue must not
+  /// be empty.
   virtual Leaving Pop(Time now) = 0;
-  /// Arrival time of the oldest waiting packet; Time::max() for an empty queue.
+  /// Returns the arrival time of the oldest waiting packet, or Time::max() if the queue is empty.
   virtual Time Oldest() const = 0;
   virtual std::size_t packets() const = 0;
   virtual DataSize size() const = 0;
@@ -36,7 +37,6 @@ class Queue {
   bool empty() const { return packets() == 0; }
 };
 
-/// A queue that is first in, first out.
 class FifoQueue final : public Queue {
  public:
   explicit FifoQueue(std::unique_ptr<Aqm> aqm) : aqm_(std::move(aqm)) {}

@@ -10,10 +10,10 @@ class Random {
  public:
   explicit Random(std::uint64_t seed) : engine_(seed) {}
 
-  /// Uniform in [0, 1).
+  /// Returns a number that is uniformly distributed in [0, 1).
   double Uniform() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }
-  /// Returns true with `probability`. Draws no number for 0, so that a switched-off feature does
-  /// not shift the sequence of others.
+  /// Returns true with `probability`. Draws no number if it is 0, so that a feature that is off
+  /// does not change the sequence of the others.
   bool Chance(double probability) { return probability > 0 && Uniform() < probability; }
 
  private:

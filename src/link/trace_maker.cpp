@@ -33,7 +33,7 @@ class Drive {
  public:
   explicit Drive(std::uint64_t seed) : random_(seed) {}
 
-  /// Returns the rate of the next step, relative to the mean; 0 in a gap.
+  /// Returns the rate of the next step, relative to the mean, or 0 in a gap.
   double Next() {
     fading_ = kRateCorrelation * fading_ +
               std::sqrt(1 - kRateCorrelation * kRateCorrelation) * kDeviation * Normal();
@@ -53,7 +53,8 @@ class Drive {
  private:
   static int Steps(double seconds) { return static_cast<int>(seconds / Seconds(kStep)); }
 
-  /// Returns the sum of twelve uniform numbers: nearly Gaussian, and the same on every machine.
+  /// Returns a nearly Gaussian number, which is the same on every machine: the sum of twelve
+  /// uniform numbers.
   double Normal() {
     double sum = -6;
     for (int i = 0; i < 12; ++i) sum += random_.Uniform();
@@ -108,7 +109,8 @@ std::string MakeGapTrace(const GapTraceConfig& config) {
     AppendLine(t, config.rate, &text);
     AppendLine(t + config.every - config.gap, config.in_gaps, &text);
   }
-  // The last line of a repeating trace lasts as long as the line before it: half a gap each.
+  // The last line of a repeating trace lasts as long as the line before it. The two lines are half
+  // of the last gap each.
   AppendLine(t - config.gap / 2, config.in_gaps, &text);
   return text;
 }
