@@ -31,7 +31,8 @@ void LinkLedger::Trim(Source* source) {
   source->waiting = std::max(source->waiting, source->first);
 }
 
-/// Returns false if the report names packets that this link never sent.
+/// Converts the packets in `block` that have arrived to the numbers of this link. Returns false if
+/// the block names packets that this link never sent.
 bool LinkLedger::Translate(const Source& source, const rtcp::SsrcReport& block,
                            rtcp::SsrcReport* own) {
   std::vector<std::pair<std::int64_t, const rtcp::PacketMetric*>> arrived;
@@ -53,7 +54,8 @@ bool LinkLedger::Translate(const Source& source, const rtcp::SsrcReport& block,
 
 void LinkLedger::Settle(const rtcp::SsrcReport& own, Source* source, Report* report) {
   if (own.metrics.empty()) return;
-  // The block's numbers lie within one cycle of 16 bit, because kMaxPackets is less than a cycle.
+  // The numbers in the block lie within one cycle of 16 bits, because kMaxPackets is less than a
+  // cycle.
   const std::int64_t begin =
       source->end() - static_cast<std::uint16_t>(source->end() - own.begin_seq);
   for (std::size_t i = 0; i < own.metrics.size(); ++i) {

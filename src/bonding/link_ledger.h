@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The packets that left over one link, and what its receiver reported of them.
+// The packets that were sent over one link, and what the receiver reported about them.
 #pragma once
 #include <cstdint>
 #include <deque>
@@ -14,13 +14,15 @@
 
 namespace lidar::bonding {
 
-/// A link carries only some of the packets, and copies of old packets after newer packets. A
-/// controller that counted by RTP sequence numbers would see losses and repetitions. So each SSRC
-/// has its own numbers on each link, without gaps, in the order in which packets leave. Reports are
-/// converted from RTP sequence numbers to the link's numbers.
+/// Converts reports about the packets of one link to numbers of this link. A link carries only some
+/// packets of an SSRC, and may carry a copy of an old packet after newer packets. A controller that
+/// used the RTP sequence numbers would thus see losses and repetitions. Therefore each SSRC has its
+/// own numbers on each link, without gaps, in the order in which its packets are sent over the
+/// link.
 class LinkLedger {
  public:
-  /// Number of packets that are remembered. Reports of older packets are implausible.
+  /// The number of packets that are remembered for each SSRC. A report about older packets is
+  /// implausible.
   static constexpr std::size_t kMaxPackets = 8192;
   static constexpr std::size_t kMaxSources = 64;
 
@@ -35,16 +37,17 @@ class LinkLedger {
     std::vector<PacketId> missing;      // overtaken by packets that arrived; each is listed once
   };
 
-  /// Returns the packet's number on this link. The receiver reports at once after a packet with
-  /// `ends_slice`.
+  /// Call it for each packet that the link sends. Returns the packet's number on this link. The
+  /// receiver sends a report at once after a packet with `ends_slice`.
   std::uint16_t OnSent(Time now, PacketId id, bool ends_slice = true);
-  /// Returns nothing if the report has packets that never left over this link.
+  /// Converts a report. Returns nothing if the report names packets that were never sent over this
+  /// link.
   std::optional<Report> OnFeedback(const rtcp::CongestionFeedback& feedback);
-  /// Returns true if each packet of the report left over this link.
+  /// Returns true if all packets in the report were sent over this link.
   bool HasSent(const rtcp::CongestionFeedback& feedback) const;
-  /// Returns the sending time of the packet that should cause the oldest missing report, or nothing
-  /// if all packets were reported or overtaken. The receiver reports at a slice's end, at the
-  /// latest after kReportEvery.
+  /// Returns the sending time of the packet that should have caused the oldest missing report, or
+  /// nothing if all packets were reported or overtaken. The receiver sends a report at the end of
+  /// each slice, and at the latest after kReportEvery.
   std::optional<Time> waiting_since() const;
   static constexpr Duration kReportEvery = std::chrono::milliseconds(40);
 
@@ -58,7 +61,8 @@ class LinkLedger {
   struct Source {
     std::deque<Packet> packets;  // numbered first, first + 1, ...
     std::int64_t first = 0;      // number of packets.front()
-    std::int64_t waiting = 0;    // first packet neither reported nor overtaken
+    // Number of the first packet that was neither reported nor overtaken.
+    std::int64_t waiting = 0;
     std::unordered_map<std::uint16_t, std::int64_t> numbers;  // by RTP sequence number
 
     std::int64_t end() const { return first + static_cast<std::int64_t>(packets.size()); }

@@ -10,7 +10,7 @@ namespace lidar::bonding {
 constexpr std::size_t kMaxLinks = 4;
 using LinkSet = std::bitset<kMaxLinks>;
 
-/// An RTP packet and all its copies.
+/// Identifies an RTP packet and all its copies.
 struct PacketId {
   std::uint32_t ssrc = 0;
   std::uint16_t seq = 0;

@@ -8,22 +8,22 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Assumed round trip until one is measured.
+/// The round trip that is assumed until one is measured.
 constexpr Duration kUnknownRtt = 100ms;
 /// A link is in a gap if a report takes longer than a round trip plus this time, which allows for
 /// slow machines.
 constexpr Duration kReportMargin = 20ms;
-/// Least advantage for which a slice changes to another link.
+/// The least advantage for which a slice goes to another link than the slice before it.
 constexpr Duration kWorthLeaving = 5ms;
 /// A link has room for copies if its FIFO empties within this time.
 constexpr Duration kRoomForCopies = 25ms;
 /// The encoder's target ignores a link whose reports are overdue by more than this.
 constexpr Duration kLongestGap = 100ms;
-/// Round trips count as alike up to this difference.
+/// Round trips count as equal if they differ by no more than this.
 constexpr Duration kSimilarRtts = 50ms;
-/// Assumed rate of a link until one is known.
+/// The rate of a link that is assumed until one is known.
 constexpr DataRate kUnknownRate = DataRate::BitsPerSecond(1e6);
-/// Time for which packets are remembered for late acknowledgements.
+/// The time for which packets are remembered, because their acknowledgements may be late.
 constexpr Duration kReceiptMemory = 2s;
 
 }  // namespace
@@ -51,14 +51,14 @@ Duration Scheduler::Rtt(const Link& link) {
   return link.path.rtt > Duration{0} ? link.path.rtt : kUnknownRtt;
 }
 
-/// Returns the least one-way time on the link, but at most half of kMaxAge, so that even a far link
-/// gets packets that are up to half of kMaxAge old.
+/// Returns the least one-way time on the link, but at most half of kMaxAge. Because of this limit,
+/// even a link with a long delay gets packets that are up to half of kMaxAge old.
 Duration Scheduler::LeastTravel(const Link& link) {
   return std::min(link.path.min_rtt / 2, kMaxAge / 2);
 }
 
-/// Returns the time until the link has delivered `size` in addition to its queue. A gap is expected
-/// to last as long again as it has lasted.
+/// Returns the time until the link has delivered `size` in addition to its queue. If the link is in
+/// a gap, the gap is expected to last as long again as it has lasted so far.
 Duration Scheduler::WholeIn(std::size_t link, Time now, DataSize size) const {
   const Link& l = links_[link];
   if (!l.usable) return Duration::max() / 2;
@@ -92,8 +92,8 @@ bool Scheduler::InGap(Time now, std::size_t link) const {
   return !l.usable || (since && now - *since > Rtt(l) + kReportMargin);
 }
 
-/// Returns the links that share a queue with a working link of a shorter round trip. The round trip
-/// of the last slice's link counts as shorter by kSimilarRtts.
+/// Returns the links that share a queue with a working link whose round trip is shorter. The round
+/// trip of the last slice's link counts as shorter by kSimilarRtts.
 LinkSet Scheduler::Spare(Time now) const {
   const auto far = [this](std::size_t link) {
     return std::pair(Rtt(links_[link]) - (link == slice_first_ ? kSimilarRtts : Duration{0}), link);
@@ -128,7 +128,7 @@ bool Scheduler::AwaitsArrivals(Time now) const {
   });
 }
 
-/// Returns the links, in addition to the best one, that get a copy of the next slice.
+/// Returns the links that get a copy of the next slice, in addition to the best link.
 LinkSet Scheduler::CopiesOf(Time now, DataSize slice) const {
   LinkSet links;
   const bool probe = slices_ % kProbeEvery == 0;
@@ -219,7 +219,8 @@ void Scheduler::LookAtGaps(Time now) {
   }
 }
 
-/// Returns true if the packet is missing, late, or on its way only over links in a gap.
+/// Returns true if the packet is missing or late, or is in flight only over links that are in a
+/// gap.
 bool Scheduler::Overdue(Time now, const Entry& entry) const {
   if (entry.missing || now > entry.expected) return true;
   for (std::size_t i = 0; i < links_.size(); ++i)
@@ -227,8 +228,9 @@ bool Scheduler::Overdue(Time now, const Entry& entry) const {
   return true;
 }
 
-/// Returns further links for an overdue packet: the best link that is in no gap, else all others,
-/// because any of them may leave its gap first.
+/// Returns the links to which an overdue packet is copied. This is the best link that is not in a
+/// gap. If there is no such link, these are all other links, because any of them may be the first
+/// to leave its gap.
 LinkSet Scheduler::OthersFor(Time now, const Entry& entry) const {
   const LinkSet spare = Spare(now);
   LinkSet others, alive;

@@ -10,36 +10,39 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Number of packets that a regression remembers, and the least number that it needs.
+/// The number of packets that a regression remembers, and the least number that it needs.
 constexpr double kMemory = 512;
 constexpr double kFewest = 20;
-/// A regression has no result if at most this part of a term's square sum is independent of the
-/// earlier terms.
+/// A regression has no result if at most this fraction of the sum of squares of a term is
+/// independent of the earlier terms.
 constexpr double kNothing = 1e-6;
-/// Least variance of the residuals [ms^2], because arrival times are rounded to 1/1024 s.
+/// The least variance of the residuals [ms^2]. It is above 0 because arrival times are rounded to
+/// 1/1024 s.
 constexpr double kLeastVariance = 0.01;
-/// Two links count as sharing a queue if the significance of both directions together exceeds
-/// kFound, and until it falls below kStillFound.
+/// Two links are found to share a queue when the combined significance of both directions exceeds
+/// kFound. They no longer share it when the significance falls below kStillFound.
 constexpr double kFound = 4;
 constexpr double kStillFound = 1;
-/// The queue did not run empty if its delay exceeded the time to the next packet by this.
+/// The queue did not run empty between two packets if its delay exceeded the time between them by
+/// more than this.
 constexpr double kMarginMs = 1;
-/// If two links share a FIFO, packets that leave within kTogether meet the same queue: the queues
-/// that both links measure differ by less than kAlike of the longer one, on average over kQueues
-/// packets. Links that share a queue stop doing so beyond kStillAlike.
+/// Packets of two links that are sent within kTogether meet the same queue if the links share a
+/// FIFO. The queues that the two links measure then differ by less than kAlike of the longer queue,
+/// on average over kQueues packets. Links that already share a queue no longer share it if the
+/// difference exceeds kStillAlike.
 constexpr Duration kTogether = 10ms;
 constexpr double kAlike = 0.35;
 constexpr double kStillAlike = 0.5;
 constexpr double kQueues = 16;
-/// If two queues differ, the paths may have parted, so each packet that shows a difference takes
-/// this share of the weight of earlier samples. An empty queue gives no newer samples to replace
-/// them.
+/// If two queues differ, the paths may have separated. Each packet that shows a difference
+/// therefore takes this fraction of the weight of earlier samples. New samples may not replace
+/// them, because an empty queue gives no samples.
 constexpr double kFade = 1.0 / 32;
-/// A longer spacing is a gap of the link.
+/// A longer time between arrivals is a gap of the link.
 constexpr double kPauseMs = 60;
 /// A larger change of a delay is due to another clock or path.
 constexpr double kJumpMs = 1000;
-/// The shortest delay of the present and the previous window counts as that of an empty queue.
+/// The shortest delay in the current and the previous window counts as the delay of an empty queue.
 constexpr Duration kBaseWindow = 10s;
 constexpr std::size_t kMaxSent = 8192;
 
@@ -64,7 +67,8 @@ void SharedQueues::Regression::Add(const Terms& x, double y) {
   yy_ += y * y;
 }
 
-/// Gaussian elimination leaves in the last row what the other terms do not explain.
+/// Gaussian elimination leaves in the last row the part of the last term that the other terms do
+/// not explain.
 double SharedQueues::Regression::Significance() const {
   if (count_ < kFewest) return 0;
   auto xx = xx_;
@@ -115,14 +119,15 @@ void SharedQueues::OnArrival(std::size_t link, const Arrival& arrival) {
   const double sent_ms = Milliseconds(arrival.sent - last->sent);
   const auto ticks = static_cast<std::int32_t>(arrival.report_timestamp - last->report_timestamp);
   const double arrived_ms = ticks / 65.536 - Milliseconds(arrival.age - last->age);
-  // The queue that earlier packets met decides, because whether a packet counts must not depend on
-  // its own arrival.
+  // A packet counts if earlier packets met a queue. Its own arrival must not decide, because a
+  // selection by arrival times would distort the regression.
   const bool busy = l.queue_ms > sent_ms + kMarginMs;
   l.Measure(arrival.sent, arrived_ms - sent_ms);
   for (std::size_t other = 0; other < kMaxLinks; ++other)
     if (other != link) Compare(link, other);
   if (!busy || arrived_ms > kPauseMs) return;
-  const double weight = 1 / std::sqrt(1 + sent_ms);  // longer spacings hold more packets of others
+  // A longer spacing has less weight, because it contains more packets of other flows.
+  const double weight = 1 / std::sqrt(1 + sent_ms);
   const double own_kb = l.SentUntil(arrival.sent) - l.SentUntil(last->sent);
   for (std::size_t other = 0; other < kMaxLinks; ++other) {
     if (other == link || links_[other].sent.empty()) continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Finds out which links pass one queue.
+// Detects which links share a queue.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -12,16 +12,20 @@
 
 namespace lidar::bonding {
 
-/// While a FIFO does not run empty, two packets of a link arrive as far apart as all packets that
-/// entered between them take to leave. Packets of another link add to that time only if they pass
-/// the same FIFO. So the spacing of arrivals is regressed on what the other link sent in between,
-/// what the link itself sent, and the spacing of departures, which stands for the flows of others.
-/// RFC 8382 compares delays instead, so it would take two queues for one if copies fill both alike.
-/// Spacings distinguish them, because packets in one queue do not change the spacing in the other.
-/// In addition, links that share a FIFO must see equally long queues at the same time.
+/// Detects which links share a queue, by the spacing of arrivals. While a FIFO does not run empty,
+/// two packets of a link arrive as far apart as all packets that entered the FIFO between them take
+/// to leave. Packets of another link add to this time only if they pass through the same FIFO. The
+/// spacing of arrivals is therefore regressed on the size that the other link sent in between, the
+/// size that the link itself sent, and the spacing of departures, which stands for the flows of
+/// others.
+///
+/// RFC 8382 compares delays instead. If copies of packets fill two queues alike, it takes the two
+/// queues for one. Spacings distinguish them, because packets in one queue do not change the
+/// spacing in the other. In addition, links that share a FIFO must see equally long queues at the
+/// same time.
 class SharedQueues {
  public:
-  /// A packet of a report.
+  /// A packet that a report acknowledges.
   struct Arrival {
     Time sent{};
     std::uint32_t report_timestamp = 0;  // in 1/65536 s of the receiver's clock
@@ -29,24 +33,25 @@ class SharedQueues {
   };
 
   void OnSent(Time now, std::size_t link, DataSize size);
-  /// Packets that overtook each other are left out.
+  /// Call it for each packet that a report acknowledges. A packet that was sent before the last one
+  /// is ignored.
   void OnArrival(std::size_t link, const Arrival& arrival);
-  /// Forgets a link, which may have another path.
+  /// Forgets the measurements of a link whose path may have changed.
   void Forget(std::size_t link);
   bool Shared(std::size_t a, std::size_t b) const { return pairs_[a][b].shared; }
 
  private:
-  /// Least squares, with less weight for older samples.
+  /// A linear regression by least squares, in which older samples have less weight.
   class Regression {
    public:
     static constexpr std::size_t kTerms = 4;
     using Terms = std::array<double, kTerms>;
 
     void Add(const Terms& x, double y);
-    /// Reduces the weight of all samples so far to `share` of what it was.
+    /// Multiplies the weight of all samples so far by `share`.
     void Fade(double share);
-    /// Returns the slope of the last term over its standard error, or 0 if the samples do not show
-    /// the slope.
+    /// Returns the slope of the last term divided by its standard error, or 0 if the samples do not
+    /// determine the slope.
     double Significance() const;
 
    private:
@@ -56,9 +61,9 @@ class SharedQueues {
     double yy_ = 0;
   };
   struct Pair {
-    Regression spacing;  // of the first link's packets, by what the second sent
-    // Mean difference of the two queues, and mean of the longer one, when packets left together.
-    // Only pairs_[a][b] with a < b has these means.
+    Regression spacing;  // of the first link's arrivals, by what the second link sent
+    // The mean difference of the two queues, and the mean of the longer queue, when both links sent
+    // packets at the same time. Only pairs_[a][b] with a < b has these means.
     double apart_ms = 0, longer_ms = 0;
     bool shared = false;
   };
@@ -70,8 +75,8 @@ class SharedQueues {
     std::deque<Sent> sent;
     double sent_kb = 0;
     std::optional<Arrival> last;
-    double delay_ms = 0;  // above the first packet's
-    double queue_ms = 0;  // that the last packet met
+    double delay_ms = 0;  // of the last packet, relative to the first packet
+    double queue_ms = 0;  // queueing delay that the last packet met
     double base_ms = 0, old_base_ms = 0;
     Time base_since{};
 
