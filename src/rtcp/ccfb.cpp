@@ -20,14 +20,14 @@ constexpr std::uint16_t kOffsetMask = 0x1FFF;
 constexpr std::uint16_t kOffsetSaturated = 0x1FFE;
 constexpr double kOffsetUnitsPerSecond = 1024;
 
-/// Returns the length of an RTCP packet from its header, or 0.
+/// Returns the length of an RTCP packet as its header gives it, or 0 if the header is invalid.
 std::size_t RtcpLength(ByteView bytes) {
   if (bytes.size < 4 || (bytes.data[0] & kVersionMask) != kVersion2) return 0;
   ByteReader reader(bytes.Sub(2));
   return 4 * (std::size_t{reader.Be16()} + 1);
 }
 
-/// Returns the packet without RTCP padding, or nothing if the padding is malformed.
+/// Returns the packet without its RTCP padding, or an empty view if the padding is malformed.
 ByteView WithoutPadding(ByteView packet) {
   if ((packet.data[0] & kPaddingBit) == 0) return packet;
   const std::size_t padding = packet.data[packet.size - 1];
@@ -60,7 +60,8 @@ struct ReadBlocks {
   bool padding_is_zero = true;
 };
 
-/// Reads all blocks under one reading of num_reports. Returns nothing if they do not fill `bytes`.
+/// Reads all blocks, where `reading` is the meaning of num_reports. Returns nothing if the blocks
+/// do not end where `bytes` ends.
 std::optional<ReadBlocks> Read(ByteView bytes, NumReports reading) {
   ReadBlocks result;
   ByteReader reader(bytes);
@@ -109,8 +110,8 @@ std::optional<CongestionFeedback> CcfbParser::Parse(ByteView packet) {
   auto count = Read(blocks, NumReports::kCount);
   auto minus_one = Read(blocks, NumReports::kCountMinusOne);
   if (!count && !minus_one) return std::nullopt;
-  // The two readings give different lengths for even counts only. For odd counts the reference
-  // implementation of SCReAM sends a block where RFC 8888 has padding.
+  // The two meanings give different lengths for even counts only. For odd counts, the reference
+  // implementation of SCReAM sends a metric block where RFC 8888 has padding.
   if (!count || (minus_one && !count->padding_is_zero))
     reading_ = NumReports::kCountMinusOne;
   else if (!minus_one)

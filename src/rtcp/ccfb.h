@@ -11,18 +11,18 @@
 
 namespace lidar::rtcp {
 
-/// Meaning of the 16 bits after begin_seq.
+/// The meaning of num_reports, the 16 bits after begin_seq.
 enum class NumReports {
   kCount,          ///< the number of metric blocks (RFC 8888 with erratum 8166)
   kCountMinusOne,  ///< that number minus one (Ericsson's reference)
 };
 
-/// A packet in a report. `ecn` and `arrival_offset` are meaningless if it was not received.
+/// A packet in a report. `ecn` and `arrival_offset` are meaningless if the packet was not received.
 struct PacketMetric {
   bool received = false;
   Ecn ecn = Ecn::kNotEct;
-  /// Time from the packet's arrival to the report timestamp. Unset if unknown or too long for the
-  /// field.
+  /// The time from the packet's arrival to the report timestamp. It is unset if it is unknown, or
+  /// too long for the field.
   std::optional<Duration> arrival_offset;
 };
 
@@ -35,24 +35,27 @@ struct SsrcReport {
 struct CongestionFeedback {
   std::uint32_t sender_ssrc = 0;
   std::vector<SsrcReport> blocks;
-  /// Counts 1/65536 s. The epoch is the receiver's, so only differences mod 2^32 are meaningful.
+  /// The time of the report in units of 1/65536 s. Its epoch is the receiver's, so that only
+  /// differences mod 2^32 are meaningful.
   std::uint32_t report_timestamp = 0;
 };
 
-/// Returns true for an RTCP packet with the type of RFC 8888 feedback, valid or not.
+/// Returns true if an RTCP packet has the type of RFC 8888 feedback, even if the packet is invalid.
 bool IsCcfb(ByteView rtcp_packet);
 
-/// Splits a compound or reduced-size RTCP datagram into its packets, without a copy. Returns
-/// nothing if the lengths do not add up: then the datagram is to be treated as one opaque packet.
+/// Splits a compound or reduced-size RTCP datagram into its packets, without copying them. Returns
+/// nothing if the lengths are inconsistent. The caller then treats the datagram as a single opaque
+/// packet.
 std::vector<ByteView> SplitRtcp(ByteView datagram);
 
-/// Parses a peer's feedback and detects its reading of num_reports. A length that fits only one
-/// reading decides. If both fit (odd counts), a padding half-word that is not zero shows
-/// kCountMinusOne; otherwise the last reading holds, at first kCount.
+/// Parses a peer's feedback, and detects which meaning of num_reports the peer uses. If the length
+/// of a packet is correct under only one meaning, the peer uses this one. If both are possible, as
+/// for odd counts, a padding half-word that is not zero shows kCountMinusOne. Otherwise the peer's
+/// last meaning is kept, which is kCount at first.
 class CcfbParser {
  public:
-  /// Parses one whole RTCP packet. Returns nothing for other types and versions, and for wrong
-  /// lengths.
+  /// Parses a whole RTCP packet. Returns nothing if the packet has another type or version, or a
+  /// wrong length.
   std::optional<CongestionFeedback> Parse(ByteView rtcp_packet);
   NumReports num_reports() const { return reading_; }
 

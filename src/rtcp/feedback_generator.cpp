@@ -9,10 +9,11 @@ namespace lidar::rtcp {
 namespace {
 
 constexpr std::size_t kMaxSources = 64;
-/// A sequence number farther than this from the newest one belongs to another run of packets.
+/// A sequence number that is farther than this from the newest one belongs to another run of
+/// numbers.
 constexpr int kMaxJump = 3000;
-/// A source with more unreported numbers than this starts anew. Only the jumps of a hostile sender,
-/// or reports that cannot leave, cause so many.
+/// A source that has more unreported numbers than this starts anew. There are so many only if a
+/// hostile sender makes its numbers jump, or if reports cannot be sent.
 constexpr int kMaxBacklog = 8192;
 constexpr std::int64_t kIpUdp = 28;
 constexpr std::int64_t kReportWithoutBlocks = 12;
@@ -81,8 +82,8 @@ void FeedbackGenerator::Start(Source* source, std::uint16_t seq) {
   source->first = source->next_report = source->lowest_new = extended;
 }
 
-/// Returns the extended sequence number. A far jump counts as a sender's restart after a second
-/// packet confirms it.
+/// Returns the extended sequence number, or nothing if the packet is ignored. A far jump of the
+/// numbers counts as a restart of the sender after a second packet has confirmed it.
 std::optional<std::int64_t> FeedbackGenerator::Locate(Source* source, std::uint16_t seq) {
   const std::int64_t extended = source->unwrapper.Peek(seq);
   const std::int64_t newest = source->unwrapper.newest().value_or(extended);
@@ -94,8 +95,8 @@ std::optional<std::int64_t> FeedbackGenerator::Locate(Source* source, std::uint1
     return source->first;
   }
   source->restart.reset();
-  // A packet before the first one extends the record backwards until the first report. Later the
-  // record may have dropped the packet.
+  // A packet before the first one extends the record backwards, but only until the first report.
+  // After that, the record may have dropped this packet already.
   if (extended < source->first && source->next_report > source->first) return std::nullopt;
   if (extended - source->next_report > kMaxBacklog) {
     Start(source, seq);
@@ -104,7 +105,7 @@ std::optional<std::int64_t> FeedbackGenerator::Locate(Source* source, std::uint1
   return source->unwrapper.Unwrap(seq);
 }
 
-/// Returns false for a repeated packet.
+/// Stores an arrival. Returns false if the packet has already arrived before.
 bool FeedbackGenerator::Store(Source* source, std::int64_t seq, Time arrival, Ecn ecn) {
   while (seq < source->first) {
     source->window.emplace_front();
@@ -121,7 +122,7 @@ bool FeedbackGenerator::Store(Source* source, std::int64_t seq, Time arrival, Ec
   }
   Arrival& a = source->window[static_cast<std::size_t>(seq - source->first)];
   if (a.received) {
-    // RFC 8888: the time of the first copy, but CE of any copy.
+    // RFC 8888 requires the time of the first copy, but the CE mark of any copy.
     if (ecn == Ecn::kCe) a.ecn = Ecn::kCe;
     return false;
   }
@@ -162,8 +163,8 @@ void FeedbackGenerator::Schedule(Time arrival, const ReceivedPacket& packet) {
   }
 }
 
-/// Returns the greatest size of the next RTCP packet [bytes]. It keeps the reports below the
-/// received bytes.
+/// Returns the greatest size that the next RTCP packet may have [bytes]. It keeps the sum of all
+/// reports below the received bytes.
 std::int64_t FeedbackGenerator::Allowance() const {
   return std::min(config_.max_report.bytes(), (stats_.received - stats_.sent).bytes() - kIpUdp);
 }
@@ -187,8 +188,9 @@ std::optional<CongestionFeedback> FeedbackGenerator::Take(Time at) {
   return report;
 }
 
-/// Returns the first number of a block of at most `max_metrics`. If there is no room for all, new
-/// packets and late ones take precedence over those that are reported again (the overlap).
+/// Returns the first number of a block that has room for `max_metrics`. If there is no room for all
+/// packets, new packets and late packets take precedence over packets that were already reported
+/// (the overlap).
 std::int64_t FeedbackGenerator::FirstToReport(const Source& source,
                                               std::int64_t max_metrics) const {
   const std::int64_t fresh = std::min(source.next_report, source.lowest_new);
@@ -196,7 +198,7 @@ std::int64_t FeedbackGenerator::FirstToReport(const Source& source,
   return std::max({source.first, wanted, std::min(fresh, source.end() - max_metrics)});
 }
 
-/// Returns the number of bytes added.
+/// Appends a block about `source` that fits into `room` bytes. Returns the number of bytes added.
 std::int64_t FeedbackGenerator::AppendBlock(Time now, std::uint32_t ssrc, Source* source,
                                             std::int64_t room, CongestionFeedback* report) {
   const std::int64_t max_metrics = (room - kBlockWithoutMetrics) / 4 * 2;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The receiver's clock in report timestamps: 32 bits of 1/65536 s that wrap.
+// The receiver's clock in report timestamps, which are 32-bit counts of 1/65536 s that wrap.
 #pragma once
 #include <cstdint>
 
@@ -8,7 +8,7 @@
 
 namespace lidar::rtcp {
 
-/// Conversions are exact, so that the wrap after 18 hours causes no error.
+/// Conversions are exact, so that the wrap of timestamps after 18 hours causes no error.
 class ReportClock {
  public:
   static std::uint32_t ToTimestamp(Time t) {
@@ -16,7 +16,7 @@ class ReportClock {
     const std::int64_t s = ns / kSecond;
     return static_cast<std::uint32_t>(s * 65536 + ns % kSecond * 65536 / kSecond);
   }
-  /// The first timestamp sets the epoch.
+  /// Converts a timestamp to a time that does not wrap. The first timestamp sets the epoch.
   Time Unwrap(std::uint32_t timestamp) {
     const std::int64_t units = unwrapper_.Unwrap(timestamp);
     const std::int64_t s = units / 65536;

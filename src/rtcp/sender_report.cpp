@@ -14,7 +14,7 @@ constexpr std::uint8_t kReceiverReport = 201;
 constexpr std::uint8_t kApp = 204;
 constexpr std::uint8_t kVersion = 1;         // subtype of the packet
 constexpr std::uint32_t kName = 0x474c5352;  // "GLSR"
-constexpr std::uint16_t kWords = 15;         // after the first one
+constexpr std::uint16_t kWords = 15;         // 32-bit words after the first one
 
 std::uint32_t Saturate(double value) {
   constexpr double kMax = std::numeric_limits<std::uint32_t>::max();
@@ -29,7 +29,7 @@ struct AppPacket {
   ByteReader rest;  // what follows the name
 };
 
-/// Opens `packet` if it is an APP packet with our name.
+/// Returns the content of `packet` if it is an APP packet with our name, and sets `ssrc`.
 std::optional<AppPacket> OpenApp(ByteView packet, std::uint32_t* ssrc) {
   ByteReader in(packet);
   const std::uint8_t first = in.U8();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Reports of the sender's view of the path to the receiver: RTCP APP (PT 204, name GLSR).
+// Reports to the receiver about the path as the sender sees it: RTCP APP (PT 204, name GLSR).
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -11,7 +11,7 @@
 
 namespace lidar::rtcp {
 
-/// All fields have 32 bits on the wire: amounts saturate, counts wrap.
+/// All fields have 32 bits in the packet. Amounts saturate, and counts wrap.
 struct SenderReport {
   std::uint32_t ssrc = 0;
   std::uint32_t time_ms = 0;  // of a monotonic clock with any epoch; wraps
@@ -20,9 +20,9 @@ struct SenderReport {
   DataRate sent_bitrate;
   DataSize ref_wnd;
   DataSize bytes_in_flight;
-  Duration queue_delay{};         // of the path; this and the next two are sent in us
+  Duration queue_delay{};         // of the path; this and the next two fields are sent in us
   Duration rtt{};                 // smoothed
-  Duration sender_queue_delay{};  // wait of packets before they leave
+  Duration sender_queue_delay{};  // time that packets wait at the sender
   std::uint32_t packets_sent = 0;
   std::uint32_t packets_lost = 0;
   std::uint32_t packets_ce = 0;
@@ -34,8 +34,8 @@ std::vector<std::uint8_t> BuildSenderReport(const SenderReport& report);
 
 /// Returns true if a compound RTCP datagram has an APP packet of this name, of any version.
 bool HasSenderReport(ByteView datagram);
-/// Parses the first sender report that is whole and has a known version. Fields of newer senders
-/// behind the known ones are ignored.
+/// Parses the first sender report that is complete and has a known version. Newer senders may
+/// append fields, which are ignored.
 std::optional<SenderReport> ParseSenderReport(ByteView datagram);
 
 }  // namespace lidar::rtcp

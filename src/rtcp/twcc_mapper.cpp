@@ -9,7 +9,8 @@ namespace {
 
 using Metrics = std::map<std::int64_t, PacketMetric>;
 
-/// Appends a block for each run of sequence numbers. Packets between two runs were not reported.
+/// Appends a block for each run of consecutive sequence numbers. Packets between two runs were not
+/// reported.
 void AppendBlocks(std::uint32_t ssrc, const Metrics& metrics, CongestionFeedback* report) {
   std::int64_t next = 0;
   for (const auto& [seq, metric] : metrics) {
@@ -26,7 +27,7 @@ void TwccMapper::OnSent(std::uint16_t number, std::uint32_t ssrc, std::uint16_t 
   const std::int64_t extended = numbers_.Peek(number);
   const std::int64_t end = first_ + static_cast<std::int64_t>(sent_.size());
   if (sent_.empty() || extended < first_ || extended > end + kMaxHistory) {
-    // The first packet, or the numbers began anew.
+    // This is the first packet, or the numbers have started anew.
     sent_.clear();
     numbers_.Reset();
     first_ = numbers_.Unwrap(number);
@@ -49,7 +50,7 @@ const TwccMapper::Sent* TwccMapper::Find(std::uint16_t number) const {
   return sent.ours ? &sent : nullptr;
 }
 
-/// Adds the multiple of kTwccPeriod that brings `arrival` nearest to the newest arrival.
+/// Returns `arrival` plus the multiple of kTwccPeriod that brings it nearest to the newest arrival.
 Duration TwccMapper::Unwrap(Duration arrival) {
   if (!newest_) return arrival;
   const std::int64_t away = (*newest_ - arrival).count();

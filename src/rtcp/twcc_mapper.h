@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Maps the packet numbers of transport-wide feedback (TWCC,
+// Converts the packet numbers of transport-wide feedback (TWCC,
 // draft-holmer-rmcat-transport-wide-cc-extensions-01) to SSRCs and sequence numbers, by which the
-// controller counts packets. An rtpsession reads the feedback packets.
+// controller identifies packets. An rtpsession parses the feedback packets.
 #pragma once
 #include <cstdint>
 #include <deque>
@@ -14,28 +14,29 @@
 
 namespace lidar::rtcp {
 
-/// URI of the RTP header extension with the packet numbers.
+/// The URI of the RTP header extension that carries the packet numbers.
 constexpr const char* kTwccUri =
     "http://www.ietf.org/id/draft-holmer-rmcat-transport-wide-cc-extensions-01";
-/// Period of arrival times, 12 days.
+/// The period after which arrival times repeat, 12 days.
 constexpr Duration kTwccPeriod = std::chrono::milliseconds(64) * (1 << 24);
-/// Number of packets that can be distinguished: half of the numbers.
+/// The greatest number of packets in a report, and of sent packets that are remembered: a quarter
+/// of all numbers.
 constexpr std::size_t kMaxTwccPackets = 1 << 14;
 
 struct TwccFeedback {
   std::uint16_t base_number = 0;
-  /// Arrival times of base_number, base_number + 1, ... on the receiver's clock; unset: not
-  /// received.
+  /// The arrival times of base_number, base_number + 1, ... on the receiver's clock. A time is
+  /// unset if the packet was not received.
   std::vector<std::optional<Duration>> arrivals;
 };
 
-/// The sender's side. TWCC has no ECN bits and no report time: packets count as Not-ECT, and the
-/// last arrival in a report counts as the report's time.
+/// Converts feedback at the sender. TWCC has no ECN bits and no time of the report. Packets
+/// therefore count as Not-ECT, and the last arrival in a report counts as the time of the report.
 class TwccMapper {
  public:
   void OnSent(std::uint16_t number, std::uint32_t ssrc, std::uint16_t seq);
-  /// Leaves out numbers that were never sent, or sent too long ago. Returns nothing if no number
-  /// remains.
+  /// Converts a report. Leaves out numbers that were never sent, or sent too long ago. Returns
+  /// nothing if no number remains.
   std::optional<CongestionFeedback> Map(const TwccFeedback& feedback);
 
  private:
