@@ -78,7 +78,7 @@ struct State {
   SharedSocketAddress peer;
   Counters counters;
 
-  // Only the streaming thread uses what follows, between start and stop.
+  // The members below are used only by the streaming thread, between start and stop.
   WakeFd wake;
   UdpBatchSender batch;
   NativeAddress to;
@@ -87,7 +87,7 @@ struct State {
   int warned_errno = 0;
 };
 
-/// The settings for a call of render.
+/// The settings that apply to one call of render.
 struct Marking {
   guint8 dscp_bits;
   guint8 ecn;
@@ -214,8 +214,8 @@ static gboolean Stop(GstBaseSink* base) {
   return TRUE;
 }
 
-/// Makes the address on `buffer` the destination. The element that set the address (screamrx) has
-/// validated the peer.
+/// Makes the address that is attached to `buffer` the destination. The element that has attached
+/// the address (screamrx) has validated the peer.
 static void FollowPeer(State& state, GstBuffer* buffer) {
   const GstNetAddressMeta* meta = gst_buffer_get_net_address_meta(buffer);
   if (meta == nullptr || meta->addr == state.peer.get()) return;
@@ -231,8 +231,8 @@ static Marking CurrentMarking(State& state) {
       s.options.dscp < 0 ? state.socket_tos : static_cast<guint8>(s.options.dscp << 2);
   Marking marking{dscp, static_cast<guint8>(s.ecn), s.reply, 0};
   if (s.interface.empty()) return marking;
-  // Looks up the index for each call, because an interface that was removed comes back with another
-  // index.
+  // The index is looked up for each call, because an interface that was removed returns with
+  // another index.
   const int fd = g_socket_get_fd(state.used.socket.get());
   if (const unsigned index = lidar::net::InterfaceIndex(fd, s.interface))
     marking.interface = index;
@@ -241,7 +241,8 @@ static Marking CurrentMarking(State& state) {
   return marking;
 }
 
-/// Warns once for each new kind of error. A path that is down for a while must not end the stream.
+/// Warns once for each new kind of error. Errors do not end the stream, because a path may be down
+/// for a while.
 static void WarnOnce(GstLidarEcnUdpSink* self, const UdpBatchSender::Result& result) {
   State& state = StateOf(self);
   if (result.last_errno == 0) {
@@ -267,7 +268,8 @@ static GstFlowReturn Flush(GstLidarEcnUdpSink* self) {
   return result.woken ? GST_FLOW_FLUSHING : GST_FLOW_OK;
 }
 
-/// Adds `buffer` to the batch, which has room.
+/// Adds `buffer` to the batch, which must not be full. If the buffer cannot be mapped, posts an
+/// error message and returns false.
 static bool Add(GstLidarEcnUdpSink* self, GstBuffer* buffer, const Marking& marking) {
   State& state = StateOf(self);
   if (marking.reply) FollowPeer(state, buffer);

@@ -34,7 +34,8 @@ namespace {
 
 using namespace lidar::gst;
 
-// Enough for 1 s of 16 Mbit/s. A kernel that grants less than this default causes no warning.
+// The default receive buffer, which is enough for 1 s at 16 Mbit/s. There is no warning if the
+// kernel grants less than this default.
 constexpr guint kDefaultBuffer = 2u << 20;
 constexpr gint kDefaultPayload = 96;
 
@@ -63,7 +64,7 @@ struct State {
   SocketInUse used;
   Counters counters;
 
-  // Only the streaming thread uses what follows, between start and stop.
+  // The members below are used only by the streaming thread, between start and stop.
   WakeFd wake;
   UdpBatchReceiver batch;
   std::deque<BufferPtr> received;  // rest of the last batch
@@ -146,7 +147,7 @@ static gboolean Stop(GstBaseSrc* base) {
   return TRUE;
 }
 
-/// Running time at which the datagram reached the kernel.
+/// Returns the running time at which the datagram reached the kernel.
 static GstClockTime ArrivalRunningTime(GstLidarEcnUdpSrc* self, GstClockTime arrival) {
   GstClock* clock = gst_element_get_clock(GST_ELEMENT(self));
   if (clock == nullptr) return GST_CLOCK_TIME_NONE;
@@ -187,13 +188,13 @@ static void PostTimeout(GstLidarEcnUdpSrc* self) {
                                                                  G_TYPE_UINT64, timeout, nullptr)));
 }
 
-/// Waits for datagrams and takes all, up to a batch.
+/// Waits for datagrams, and receives all that are available, up to a batch.
 static GstFlowReturn ReceiveBatch(GstLidarEcnUdpSrc* self) {
   State& state = StateOf(self);
   const int fd = g_socket_get_fd(state.used.socket.get());
   for (;;) {
     const int n = state.batch.Receive(fd, [&](const ReceivedDatagram& d) {
-      // An empty datagram carries no data.
+      // An empty datagram carries no data and is ignored.
       if (d.size > 0) state.received.emplace_back(ToBuffer(self, d));
     });
     if (!state.received.empty()) {
@@ -219,8 +220,8 @@ static GstFlowReturn ReceiveBatch(GstLidarEcnUdpSrc* self) {
   }
 }
 
-/// Returns single buffers: GstBaseSrc 1.22 accepts lists, but releases a wrong buffer if it stops
-/// with a list.
+/// Returns a single buffer. GstBaseSrc 1.22 accepts buffer lists, too, but if it stops with a list,
+/// it releases a wrong buffer.
 static GstFlowReturn Create(GstPushSrc* push, GstBuffer** out) {
   auto* self = GST_LIDAR_ECN_UDP_SRC(push);
   State& state = StateOf(self);
@@ -248,7 +249,7 @@ static GstCaps* GetCaps(GstBaseSrc* base, GstCaps* filter) {
   return gst_caps_intersect_full(filter, caps.get(), GST_CAPS_INTERSECT_FIRST);
 }
 
-/// Returns fixed caps that downstream takes, or null if it takes any.
+/// Returns fixed caps that downstream accepts, or null if downstream accepts any caps.
 static GstCaps* FixateForPeer(const GstCaps* peer) {
   if (gst_caps_is_any(peer) || gst_caps_is_empty(peer)) return nullptr;
   GstCaps* caps = gst_caps_truncate(gst_caps_copy(peer));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Plugin ecnudp: UDP with the ECN field set and read.
+// Plugin ecnudp: UDP elements that set and read the ECN field.
 #include "gst/lidar/gstlidar.h"
 
 GST_ELEMENT_REGISTER_DECLARE(ecnudpsrc)

@@ -19,11 +19,12 @@ T Payload(cmsghdr* c) {
 
 void Enable(int fd, int level, int name) {
   const int on = 1;
-  // An option of the other address family fails, but is not needed.
+  // An option of the other address family fails, which does no harm.
   if (setsockopt(fd, level, name, &on, sizeof on) != 0) return;
 }
 
-/// Writes a control message after `used` bytes of others. Returns the new number of bytes.
+/// Writes a control message after the `used` bytes of earlier messages. Returns the new number of
+/// used bytes.
 template <class Value>
 std::size_t Append(SendControl* control, std::size_t used, int level, int type,
                    const Value& value) {
@@ -75,7 +76,8 @@ DatagramInfo ReadInfo(msghdr* received) {
 void SetControl(std::uint8_t tos, const NativeAddress& to, unsigned interface, SendControl* control,
                 msghdr* message) {
   *control = {};
-  // A datagram to a mapped address leaves through the IPv4 stack, which reads only its own options.
+  // A datagram to an IPv4 address that is mapped into IPv6 is sent by the IPv4 stack, which reads
+  // only IPv4 options.
   const bool v4 = to.IsIpv4();
   const int level = v4 ? IPPROTO_IP : IPPROTO_IPV6;
   const int value = tos;
@@ -108,7 +110,7 @@ bool SendMulticastFrom(int fd, const std::string& interface) {
   if (getsockname(fd, reinterpret_cast<sockaddr*>(&local), &length) != 0) return false;
   ip_mreqn v4{};
   v4.imr_ifindex = index;
-  // An IPv6 socket may send to IPv4 groups, too, which use the IPv4 option.
+  // An IPv6 socket may also send to IPv4 groups, for which the kernel uses the IPv4 option.
   const int v4_result = setsockopt(fd, IPPROTO_IP, IP_MULTICAST_IF, &v4, sizeof v4);
   return (local.ss_family == AF_INET6
               ? setsockopt(fd, IPPROTO_IPV6, IPV6_MULTICAST_IF, &index, sizeof index)
@@ -117,7 +119,7 @@ bool SendMulticastFrom(int fd, const std::string& interface) {
 
 unsigned SetReceiveBuffer(int fd, unsigned bytes) {
   const int size = static_cast<int>(bytes);
-  // The forced form needs CAP_NET_ADMIN.
+  // SO_RCVBUFFORCE needs CAP_NET_ADMIN.
   if (bytes > 0 && setsockopt(fd, SOL_SOCKET, SO_RCVBUFFORCE, &size, sizeof size) != 0 &&
       setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &size, sizeof size) != 0) {
     return 0;

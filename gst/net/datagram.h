@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The kernel's additions to datagrams of all UDP sockets: ECN bits and the time of arrival.
+// The data that the kernel attaches to datagrams of UDP sockets: ECN bits and the time of arrival.
 #pragma once
 #include <netinet/in.h>
 #include <sys/socket.h>
@@ -12,7 +12,7 @@
 
 namespace lidar::net {
 
-/// A socket address as the kernel takes it.
+/// A socket address in the form that the kernel uses.
 struct NativeAddress {
   sockaddr_storage storage{};
   socklen_t length = 0;
@@ -20,21 +20,21 @@ struct NativeAddress {
   const sockaddr* get() const { return reinterpret_cast<const sockaddr*>(&storage); }
   sockaddr* get() { return reinterpret_cast<sockaddr*>(&storage); }
   bool valid() const { return length != 0; }
-  /// Returns true for an IPv4 address, also for one that is mapped into IPv6.
+  /// Returns true for an IPv4 address, even if it is mapped into IPv6.
   bool IsIpv4() const;
   bool operator==(const NativeAddress& o) const;
   bool operator!=(const NativeAddress& o) const { return !(*this == o); }
 };
 
-/// The kernel's additions to a datagram.
+/// The data that the kernel attaches to a datagram.
 struct DatagramInfo {
   std::uint8_t tos = 0;             // DSCP and ECN
   std::optional<Duration> arrival;  // since the Unix epoch
   std::optional<std::uint32_t>
-      overflow;  // datagrams that found the buffer full, since the socket opened
+      overflow;  // datagrams dropped because the buffer was full, since the socket was opened
 };
 
-/// Asks the kernel for all of DatagramInfo with each datagram.
+/// Makes the kernel attach all of DatagramInfo to each datagram.
 void AskForInfo(int fd);
 DatagramInfo ReadInfo(msghdr* received);
 
@@ -42,21 +42,22 @@ DatagramInfo ReadInfo(msghdr* received);
 struct SendControl {
   alignas(cmsghdr) char bytes[CMSG_SPACE(sizeof(int)) + CMSG_SPACE(sizeof(in6_pktinfo))] = {};
 };
-/// Makes `message`, whose destination is `to`, leave with `tos` through the interface with the
-/// index `interface` (0: by the routes). Needs no privileges. `control` must live until the message
-/// is sent.
+/// Sets the control messages of `message`, whose destination is `to`. The kernel then sends it with
+/// `tos`, through the interface with the index `interface` or, if that is 0, by the routes. Needs
+/// no privileges. `control` must live until the message is sent.
 void SetControl(std::uint8_t tos, const NativeAddress& to, unsigned interface, SendControl* control,
                 msghdr* message);
 
-/// Index of the interface `name` in the socket's network namespace; 0 if there is none.
+/// Returns the index of the interface `name` in the network namespace of the socket, or 0 if there
+/// is none.
 unsigned InterfaceIndex(int fd, const std::string& name);
 
-/// Makes multicast leave through the interface of that name. Returns false with errno set on
-/// failure.
+/// Makes the socket send multicast through the interface of that name. On failure, sets errno and
+/// returns false.
 bool SendMulticastFrom(int fd, const std::string& interface);
 
-/// Asks for a receive buffer of `bytes` (0: keeps the buffer). Returns the size that the kernel
-/// grants, or 0 on failure.
+/// Requests a receive buffer of `bytes`, or keeps the buffer if `bytes` is 0. Returns the size that
+/// the kernel grants, or 0 on failure.
 unsigned SetReceiveBuffer(int fd, unsigned bytes);
 
 }  // namespace lidar::net

@@ -69,7 +69,7 @@ UdpBatchSender::Result UdpBatchSender::Flush(int fd, const WakeFd& wake) {
       break;
     }
     result.last_errno = errno;
-    ++result.errors;  // this datagram cannot go; the next may
+    ++result.errors;  // this datagram cannot be sent, but the next one may
     ++next;
   }
   Clear();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Many datagrams a system call, each with its own ECN codepoint (sendmmsg, recvmmsg and cmsg).
+// Sends and receives many datagrams per system call, each with its own ECN codepoint (sendmmsg,
+// recvmmsg and cmsg).
 #pragma once
 #include <gst/gst.h>
 #include <sys/uio.h>
@@ -12,8 +13,8 @@
 
 namespace lidar::gst {
 
-/// Collects datagrams and sends them. Keeps the buffers mapped from Add() to Flush(); does not own
-/// them.
+/// Collects datagrams and sends them together. The buffers stay mapped from Add() to Flush(). The
+/// caller owns the buffers and must keep them until then.
 class UdpBatchSender {
  public:
   static constexpr std::size_t kCapacity = 64;
@@ -32,10 +33,11 @@ class UdpBatchSender {
   UdpBatchSender& operator=(const UdpBatchSender&) = delete;
 
   bool full() const { return count_ == kCapacity; }
-  /// `tos`: the DSCP and ECN bits of the IP header; `interface`: index of the interface to leave
-  /// by, or 0. Returns false if the buffer cannot be mapped.
+  /// Adds a datagram. `tos` has the DSCP and ECN bits of the IP header. `interface` is the index of
+  /// the interface through which the datagram is sent, or 0. Returns false if the buffer cannot be
+  /// mapped.
   bool Add(GstBuffer* buffer, guint8 tos, const NativeAddress& to, unsigned interface = 0);
-  /// Sends all datagrams, waits for the socket if necessary, and forgets them.
+  /// Sends all datagrams, and then removes them. Waits for the socket if necessary.
   Result Flush(int fd, const WakeFd& wake);
 
  private:
@@ -44,7 +46,7 @@ class UdpBatchSender {
     std::array<iovec, kMaxMemories> iov;
     std::array<GstMapInfo, kMaxMemories> maps;
     guint memories = 0;
-    GstBuffer* merged = nullptr;  // a buffer of more than kMaxMemories, mapped as a whole
+    GstBuffer* merged = nullptr;  // a buffer with too many memories, which is mapped as a whole
     NativeAddress to;
     net::SendControl control;
   };
@@ -57,9 +59,9 @@ class UdpBatchSender {
   std::size_t count_ = 0;
 };
 
-/// A datagram, and what the kernel adds to it.
+/// A datagram, and the data that the kernel attaches to it.
 struct ReceivedDatagram {
-  const guint8* data = nullptr;  // valid during the call
+  const guint8* data = nullptr;  // valid only during the call of `consume`
   gsize size = 0;
   guint8 tos = 0;
   GstClockTime arrival = GST_CLOCK_TIME_NONE;  // kernel time [ns since the Unix epoch]
@@ -72,12 +74,14 @@ class UdpBatchReceiver {
   static constexpr std::size_t kMaxDatagram = 65536;
 
   UdpBatchReceiver();
-  /// Gives waiting datagrams to `consume`. Returns their number, or -1 with errno set. Call
-  /// net::AskForInfo() on `fd` before.
+  /// Receives the datagrams that are available, and calls `consume` for each. Returns their number,
+  /// or -1 with errno set. Call net::AskForInfo() on `fd` before.
   int Receive(int fd, const std::function<void(const ReceivedDatagram&)>& consume);
-  /// Datagrams that the kernel dropped for a full buffer since the socket was opened.
+  /// Returns the number of datagrams that the kernel has dropped because the buffer was full, since
+  /// the socket was opened.
   guint kernel_drops() const { return kernel_drops_; }
-  /// Resets the count for another socket. The kernel reports no count before its first drop.
+  /// Resets the count for another socket. The kernel would not reset it, because it reports no
+  /// count before its first drop.
   void ForgetDrops() { kernel_drops_ = 0; }
 
  private:

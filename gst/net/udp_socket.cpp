@@ -17,7 +17,7 @@ namespace {
 
 using InetAddressPtr = std::unique_ptr<GInetAddress, GObjectUnref>;
 
-/// Returns true if the machine has a route to `address`. Nothing is sent.
+/// Returns true if the machine has a route to `address`. Sends no packet.
 bool HasRouteTo(GInetAddress* address) {
   const SocketPtr socket(g_socket_new(g_inet_address_get_family(address), G_SOCKET_TYPE_DATAGRAM,
                                       G_SOCKET_PROTOCOL_UDP, nullptr));
@@ -25,8 +25,9 @@ bool HasRouteTo(GInetAddress* address) {
   return socket && g_socket_connect(socket.get(), there.get(), nullptr, nullptr) != FALSE;
 }
 
-/// Prefers an address with a route, because GLib lists ::1 before 127.0.0.1 for localhost, even on
-/// a machine without IPv6.
+/// Returns the first address of `host` to which there is a route, or else the first address.
+/// Without this check, localhost would be ::1 even on a machine without IPv6, because GLib lists
+/// ::1 before 127.0.0.1.
 GInetAddress* Resolve(const std::string& host, GError** error) {
   if (GInetAddress* literal = g_inet_address_new_from_string(host.c_str())) return literal;
   std::unique_ptr<GResolver, GObjectUnref> resolver(g_resolver_get_default());
@@ -39,7 +40,8 @@ GInetAddress* Resolve(const std::string& host, GError** error) {
   return address;
 }
 
-/// Keeps the interface of a link-local address (fe80::1%eth0), which a GInetAddress lacks.
+/// Resolves `host`, and keeps the interface of a link-local address (fe80::1%eth0), which a
+/// GInetAddress cannot store.
 SocketAddressPtr ResolveWithPort(const std::string& host, guint port, GError** error) {
   if (GSocketAddress* literal = g_inet_socket_address_new_from_string(host.c_str(), port))
     return SocketAddressPtr(literal);
@@ -62,14 +64,14 @@ SocketAddressPtr Any(GSocketFamily family, guint port) {
   return SocketAddressPtr(g_inet_socket_address_new(any.get(), static_cast<guint16>(port)));
 }
 
-/// Ignores multicast groups that other programs joined.
+/// Makes the socket ignore multicast groups that only other programs have joined.
 void OnlyJoinedGroups(GSocket* socket) {
   const int off = 0;
   const int fd = g_socket_get_fd(socket);
   const bool v6 = g_socket_get_family(socket) == G_SOCKET_FAMILY_IPV6;
   const int failed = v6 ? setsockopt(fd, IPPROTO_IPV6, IPV6_MULTICAST_ALL, &off, sizeof off)
                         : setsockopt(fd, IPPROTO_IP, IP_MULTICAST_ALL, &off, sizeof off);
-  // An old kernel has no such option for IPv6.
+  // An old kernel does not have this option for IPv6, so a failure is ignored.
   if (failed != 0) return;
 }
 
@@ -100,7 +102,7 @@ NativeAddress ToNative(GSocketAddress* address, GSocketFamily family) {
 }
 
 GSocketAddress* FromNative(const NativeAddress& address) {
-  // GLib takes a pointer to non-const, and only reads.
+  // GLib takes a pointer to non-const, but only reads from it.
   sockaddr_storage copy = address.storage;
   return g_socket_address_new_from_native(&copy, address.length);
 }
@@ -172,7 +174,7 @@ bool JoinMulticast(GSocket* socket, const std::string& group, const std::string&
                 group.c_str());
     return false;
   }
-  // GLib would let the kernel choose an interface if there is none of that name.
+  // The interface must exist, because GLib would otherwise let the kernel choose one.
   if (!interface.empty() && if_nametoindex(interface.c_str()) == 0) {
     g_set_error(error, G_IO_ERROR, G_IO_ERROR_NOT_FOUND, "there is no network interface \"%s\"",
                 interface.c_str());
@@ -199,7 +201,7 @@ WakeFd::~WakeFd() {
 }
 
 void WakeFd::Wake() {
-  // The write fails only if the counter is full, which wakes as well.
+  // The write fails only if the counter is full, and then the thread is woken, too.
   if (eventfd_write(fd_, 1) != 0) return;
 }
 

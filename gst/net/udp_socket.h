@@ -19,30 +19,33 @@ struct GObjectUnref {
 };
 using SocketPtr = std::unique_ptr<GSocket, GObjectUnref>;
 using SocketAddressPtr = std::unique_ptr<GSocketAddress, GObjectUnref>;
-/// Another reference to `address`, which may be NULL.
+/// Returns a new reference to `address`, which may be NULL.
 inline SocketAddressPtr RefAddress(GSocketAddress* address) {
   return SocketAddressPtr(address != nullptr ? G_SOCKET_ADDRESS(g_object_ref(address)) : nullptr);
 }
 
-/// Returns the address for a socket of `family`: an IPv4 address becomes a mapped one on an IPv6
-/// socket. Returns an invalid address if `address` does not fit the family.
+/// Converts `address` for a socket of `family`. An IPv4 address is mapped into IPv6 if `family` is
+/// IPv6. Returns an invalid address if `address` cannot be used with `family`.
 NativeAddress ToNative(GSocketAddress* address, GSocketFamily family);
-/// Returns the address, a mapped address as IPv4; NULL for an unknown family. Transfer full.
+/// Converts `address`. An IPv4 address that is mapped into IPv6 becomes an IPv4 address. Returns
+/// NULL for an unknown family. The caller owns the result.
 GSocketAddress* FromNative(const NativeAddress& address);
 
-/// Compares as the network does: an IPv4 address equals its mapped form. NULL equals only NULL.
+/// Returns true if the two addresses are the same for the network: an IPv4 address equals its
+/// mapped form. NULL equals only NULL.
 bool SameAddress(GSocketAddress* a, GSocketAddress* b);
-/// Compares without the port.
+/// Returns true if the two addresses are the same except for the port.
 bool SameHost(GSocketAddress* a, GSocketAddress* b);
 
-/// Returns the host, without the brackets of an IPv6 literal.
+/// Returns `host` without the brackets that surround an IPv6 literal.
 std::string WithoutBrackets(const std::string& host);
 
-/// Looks up `host`, a name or a literal with or without brackets; may block. Transfer full, or
-/// NULL.
+/// Resolves `host`, which is a name, or a literal with or without brackets. May block. Returns NULL
+/// on failure. The caller owns the result.
 GSocketAddress* ResolveUdpAddress(const std::string& host, guint port, GError** error);
 
-/// Returns the host as ResolveUdpAddress() reads it, with the interface of a link-local address.
+/// Returns the host in the form that ResolveUdpAddress() reads, including the interface of a
+/// link-local address.
 std::string HostOf(GSocketAddress* address);
 
 struct UdpBind {
@@ -51,17 +54,18 @@ struct UdpBind {
   GSocketFamily family = G_SOCKET_FAMILY_INVALID;  // with an empty address: only this family
   bool reuse = false;                              // several sockets on one port, for multicast
 };
-/// A bound non-blocking socket; transfer full, or NULL.
+/// Returns a bound, non-blocking socket, or NULL on failure. The caller owns the socket.
 GSocket* OpenUdpSocket(const UdpBind& bind, GError** error);
 
-/// Joins `group` on the interface of that name (empty: the kernel's choice). The socket gets no
-/// other groups, which the kernel would give it if other programs joined them.
+/// Joins `group` on the interface of that name or, if it is empty, on an interface that the kernel
+/// chooses. The socket receives no other groups. Without this limit, the kernel would also deliver
+/// groups that other programs have joined.
 bool JoinMulticast(GSocket* socket, const std::string& group, const std::string& interface,
                    GError** error);
-/// "host:port" for messages and logs.
+/// Returns "host:port", for messages and logs.
 std::string AddressToString(GSocketAddress* address);
 
-/// Wakes poll() in another thread until Clear().
+/// An event that wakes a thread from poll(), and remains set until Clear().
 class WakeFd {
  public:
   WakeFd();
@@ -70,11 +74,13 @@ class WakeFd {
   WakeFd& operator=(const WakeFd&) = delete;
   void Wake();
   void Clear();
-  /// Readable until Clear(), for threads that wait for several descriptors.
+  /// Returns a descriptor that is readable from Wake() until Clear(), for threads that wait for
+  /// several descriptors.
   int fd() const { return fd_; }
 
   enum class Outcome { kReady, kWoken, kTimeout, kError };
-  /// Waits for `events` (poll's) on `fd`; a negative timeout waits for ever.
+  /// Waits for `events`, which are the events of poll(), on `fd`. A negative timeout waits for
+  /// ever.
   Outcome Wait(int fd, short events, gint64 timeout_ns) const;
 
  private:
