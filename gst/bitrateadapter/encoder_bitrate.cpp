@@ -21,7 +21,7 @@ struct KnownEncoder {
   const char* control = "";
 };
 
-// The first row that fits counts, so exceptions stand before their family.
+// The first row that matches applies, so exceptions stand before the row of their family.
 constexpr std::array kKnown = {
     KnownEncoder{"x264enc", "", "bitrate", kKbps},
     KnownEncoder{"x265enc", "", "bitrate", kKbps},
@@ -62,7 +62,8 @@ bool IsEncoder(GstElement* element) {
   return klass != nullptr && std::string_view(klass).find("Encoder") != std::string_view::npos;
 }
 
-/// The pad that really feeds `pad`, past the borders of bins; transfer full, null if unlinked.
+/// Returns the pad of the element that feeds `pad`, which may be inside or outside of a bin, or
+/// null if `pad` is not linked.
 PadPtr RealPeer(GstPad* pad) {
   PadPtr peer(gst_pad_get_peer(pad));
   while (peer && GST_IS_PROXY_PAD(peer.get())) {
@@ -76,7 +77,7 @@ PadPtr RealPeer(GstPad* pad) {
   return peer;
 }
 
-/// The only sink pad of `element`, or null.
+/// Returns the sink pad of `element`, or null if the element does not have exactly one.
 PadPtr OnlySinkPad(GstElement* element) {
   GST_OBJECT_LOCK(element);
   PadPtr pad(element->numsinkpads == 1 ? GST_PAD(gst_object_ref(element->sinkpads->data))
@@ -85,7 +86,7 @@ PadPtr OnlySinkPad(GstElement* element) {
   return pad;
 }
 
-/// The range of a numeric property; nothing for another type.
+/// Returns the range of a numeric property, or nothing for a property of another type.
 std::optional<std::pair<gdouble, gdouble>> RangeOf(const GParamSpec* spec) {
   if (G_IS_PARAM_SPEC_UINT(spec))
     return {{G_PARAM_SPEC_UINT(spec)->minimum, G_PARAM_SPEC_UINT(spec)->maximum}};
@@ -107,7 +108,8 @@ std::optional<std::pair<gdouble, gdouble>> RangeOf(const GParamSpec* spec) {
   return std::nullopt;
 }
 
-/// Sets a field of a structure property, and leaves the other fields, which are the user's.
+/// Sets a field of a structure property, and keeps the other fields, which the user may have set.
+/// Returns the bitrate that was set [bit/s].
 guint SetControl(GstElement* encoder, const BitrateControl& control, gdouble units) {
   GstStructure* old = nullptr;
   g_object_get(encoder, control.property.c_str(), &old, nullptr);
@@ -153,7 +155,7 @@ std::optional<guint> SetEncoderBitrate(GstElement* encoder, const BitrateControl
   }
   const auto range = RangeOf(spec);
   if (!range) return std::nullopt;
-  // At least 1, because many encoders take 0 for "automatic".
+  // The value is at least 1, because 0 means "automatic" to many encoders.
   const gdouble value = std::clamp(std::max(units, 1.0), range->first, range->second);
   GValue number = G_VALUE_INIT;
   g_value_init(&number, G_TYPE_DOUBLE);

@@ -94,7 +94,7 @@ static ElementPtr FindEncoder(GstBaseTransform* base, const Settings& settings) 
       gst_bin_get_by_name_recurse_up(GST_BIN(parent.get()), settings.encoder.c_str()));
 }
 
-/// Returns the encoder's usual control, changed by the settings `property` and `scale`.
+/// Returns the usual control of the encoder, changed by the settings `property` and `scale`.
 static std::optional<BitrateControl> ControlOf(GstElement* encoder, const Settings& settings) {
   GstElementFactory* factory = gst_element_get_factory(encoder);
   auto control = factory == nullptr ? std::nullopt : FindBitrateControl(GST_OBJECT_NAME(factory));
@@ -116,7 +116,8 @@ static void WarnOnce(GstLidarBitrateAdapter* self, const char* text, const char*
   GST_ELEMENT_WARNING(self, STREAM, ENCODE, ("%s", text), ("%s", what));
 }
 
-/// Returns false if there is no encoder, so that the event goes on upstream.
+/// Sets the bitrate of the encoder. Returns false if there is no encoder or its bitrate cannot be
+/// set. The event then goes on upstream.
 static bool Apply(GstLidarBitrateAdapter* self, guint target_bps) {
   State& state = *self->state;
   const Settings settings = Snapshot(state);
@@ -156,7 +157,8 @@ static gboolean SrcEvent(GstBaseTransform* base, GstEvent* event) {
   return GST_BASE_TRANSFORM_CLASS(gst_lidar_bitrate_adapter_parent_class)->src_event(base, event);
 }
 
-/// Scales the limits to the whole target, of which the encoder gets a fraction.
+/// Returns the limits of the whole target. The encoder gets only a fraction of the target, so the
+/// user's limits are divided by this fraction.
 static GstLidarBitrateBounds BoundsOf(const Settings& settings) {
   const auto whole = [&](guint bps) {
     return static_cast<guint>(std::min(bps / settings.fraction, kMaxBps));
@@ -164,7 +166,7 @@ static GstLidarBitrateBounds BoundsOf(const Settings& settings) {
   return {whole(settings.min_bps), whole(settings.max_bps), whole(settings.max_bps)};
 }
 
-/// Sends the user's limits, so that the sender's targets keep to them.
+/// Sends the user's limits downstream, so that the sender's targets stay within them.
 static void SendBounds(GstBaseTransform* base) {
   State& state = *GST_LIDAR_BITRATE_ADAPTER(base)->state;
   GstLidarBitrateBounds bounds{};
@@ -188,7 +190,8 @@ static gboolean SinkEvent(GstBaseTransform* base, GstEvent* event) {
   return result;
 }
 
-/// Sends changed limits before the next buffer, because they must follow the caps.
+/// Sends changed limits before the next buffer. They are not sent earlier, because they must follow
+/// the caps.
 static void BeforeTransform(GstBaseTransform* base, GstBuffer*) {
   State& state = *GST_LIDAR_BITRATE_ADAPTER(base)->state;
   {
