@@ -11,7 +11,8 @@ namespace {
 using link::AqmConfig;
 
 constexpr Duration kRtt = std::chrono::milliseconds(40);
-constexpr Duration kOtherStart = 1s;  // after ours, whose model of the link is then outdated
+// The other flow starts after ours, so that our model of the link is then outdated.
+constexpr Duration kOtherStart = 1s;
 constexpr DataSize kShortestFifo = DataSize::Bytes(10 * 1500);
 
 Scenario Beside(const std::string& name, double mbps, TcpKind other, const Parameters& p) {
@@ -47,7 +48,7 @@ Scenario BesideWithAqm(const std::string& name, TcpKind other, AqmConfig::Kind a
   return s;
 }
 
-/// The other flow runs the draft without extensions, at our frame rate.
+/// A scenario in which the other flow runs the draft without extensions, at our frame rate.
 Scenario BesideDraft(Duration phase, const Parameters& p) {
   Scenario s = BesideWithAqm("draft_ramp_20M_phase_" + std::to_string(phase / 1ms) + "ms",
                              TcpKind::kCubic, AqmConfig::Kind::kRamp, p);
@@ -60,7 +61,7 @@ Scenario BesideDraft(Duration phase, const Parameters& p) {
   return s;
 }
 
-/// Two of our flows, whose frames are `phase` apart.
+/// A scenario with two of our flows, whose frames are `phase` apart.
 Scenario AtPhase(Duration phase, const Parameters& p) {
   Scenario s =
       Beside("two_flows_phase_" + std::to_string(phase / 1ms) + "ms", 20, TcpKind::kCubic, p);
@@ -76,7 +77,7 @@ Scenario AtPhase(Duration phase, const Parameters& p) {
 
 std::vector<Scenario> BesideScenarios(const Parameters& p) {
   std::vector<Scenario> all;
-  // Shorter queues at 8 and 20 Mbit/s would hold less than ten packets.
+  // Shorter queues at 8 and 20 Mbit/s would have room for fewer than ten packets.
   const std::pair<Duration, double> fifos[] = {{15ms, 8}, {5ms, 20},  {10ms, 20}, {2ms, 50},
                                                {5ms, 50}, {10ms, 50}, {20ms, 20}, {100ms, 20}};
   for (const auto& [length, mbps] : fifos)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Scenarios with an event. Measurement begins with it or shortly after it.
+// Scenarios with an event. The measurement begins at the event or shortly after it.
 #include "src/sim/scenarios.h"
 #include "src/sim/simulated_time.h"
 
@@ -21,14 +21,14 @@ Scenario Event(const std::string& name, double mbps, const Parameters& p) {
   return s;
 }
 
-/// A queue of 1 ms drops all packets above the link's rate, as a policer does.
+/// Adds a policer: a queue of 1 ms, which drops all packets above the link's rate.
 Scenario Policed(Scenario s) {
   s.config.forward.limit.time = 1ms;
   s.config.forward.aqm.kind = link::AqmConfig::Kind::kNone;
   return s;
 }
 
-/// A burst of losses looks like a policer. Then the link becomes faster.
+/// A scenario in which a burst of losses looks like a policer, before the link becomes faster.
 Scenario PolicerLifted(const Parameters& p) {
   Scenario s = Event("policer_lifted", 10, p);
   s.config.forward.capacity = *link::Capacity::ParseTrace("0 10\n20 80\n", false, nullptr);
@@ -39,7 +39,7 @@ Scenario PolicerLifted(const Parameters& p) {
   return s;
 }
 
-/// No report arrives from 10 to 20 s. The link carries `mbps` from 12 s on.
+/// A scenario in which no report arrives from 10 to 20 s. The link carries `mbps` from 12 s on.
 Scenario Silence(const std::string& name, double mbps, const Parameters& p) {
   Scenario s = Event(name, 8, p);
   const std::string trace = "0 8\n12 " + std::to_string(mbps) + "\n";
@@ -62,7 +62,7 @@ Scenario ClockSet(const std::string& name, Duration sender, Duration receiver,
   return s;
 }
 
-/// A drift of 200 ppm is 12 ms a minute.
+/// A scenario in which the clocks drift by 200 ppm, which is 12 ms per minute.
 Scenario ClockDrift(const std::string& name, link::AqmConfig::Kind aqm, const Parameters& p) {
   Scenario s = Event(name, 8, p);
   s.config.forward.aqm.kind = aqm;
@@ -72,7 +72,7 @@ Scenario ClockDrift(const std::string& name, link::AqmConfig::Kind aqm, const Pa
   return s;
 }
 
-/// An encoder that first needs a fifth of its target, and later all of it.
+/// A scenario with an encoder that sends a fifth of its target at first, and later all of it.
 Scenario LimitedThenFree(const Parameters& p) {
   Scenario s = Event("limited_then_free", 20, p);
   s.config.flows.front().sources[0].obedience = [](Duration t) { return t < 15s ? 0.2 : 1.0; };

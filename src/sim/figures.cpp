@@ -32,7 +32,7 @@ constexpr FigureKind kDropped{"frames dropped [%]", false, 0.2, 0.2};
 constexpr FigureKind kDroppedFrames{"frames dropped", false, 3, 0.2};
 constexpr FigureKind kStreams{"two streams' ratio", true, 0.1, 0.05};
 
-/// Limits for `scenarios`. A limit below 0 is not checked.
+/// The limits for the figures of `scenarios`. A limit below 0 is not checked.
 struct MatrixGoal {
   std::vector<const char*> scenarios;
   double utilisation = -1;
@@ -109,7 +109,7 @@ std::optional<double> Limit(const MatrixGoal* goal, double MatrixGoal::*limit) {
   return goal != nullptr && goal->*limit >= 0 ? std::optional(goal->*limit) : std::nullopt;
 }
 
-/// Adds the figures of the start and of a drop of the capacity.
+/// Adds the figures of the start, and of a drop of the capacity.
 void AddEvents(const Scenario& s, const ScenarioMetrics& m, std::vector<Figure>* figures) {
   if (s.drop_at) {
     figures->push_back({&kDropPeak, m.drop.peak_queue_ms, 150.0});
@@ -153,7 +153,7 @@ std::vector<Figure> Figures(const Scenario& s, const ScenarioMetrics& m) {
   return figures;
 }
 
-/// The goals are ours: the RFCs name metrics without limits.
+/// The goals are ours, because the RFCs define metrics but no limits.
 std::vector<Figure> Figures(const RmcatCase& c, const RmcatMetrics& m) {
   const bool alone = c.config.others.empty();
   const auto goal = [&](double limit) { return alone ? std::optional(limit) : std::nullopt; };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Named figures of simulated runs, and their goals.
+// Named figures of simulated runs, with their goals.
 #pragma once
 #include <optional>
 #include <string>
@@ -13,7 +13,7 @@ namespace lidar::scream::test {
 struct FigureKind {
   const char* name;
   bool more_is_better = false;
-  /// Differences up to `absolute` plus `relative` times the value are ignored.
+  /// Differences of up to `absolute` plus `relative` times the value are ignored.
   double absolute = 0, relative = 0;
 };
 
@@ -23,15 +23,15 @@ struct Figure {
   std::optional<double> goal{};
 
   bool reached() const { return !goal || (kind->more_is_better ? value >= *goal : value <= *goal); }
-  /// Returns the difference from `base` as a multiple of the largest ignored difference: above 0 if
-  /// better, below 0 if worse.
+  /// Returns the difference from `base` as a multiple of the largest difference that is ignored.
+  /// The result is above 0 if this figure is better than `base`, and below 0 if it is worse.
   double BetterThan(const Figure& base) const;
 };
 
 /// Returns the figures of a matrix scenario, with their goals.
 std::vector<Figure> Figures(const Scenario& scenario, const ScenarioMetrics& metrics);
 std::vector<Figure> Figures(const RmcatCase& rmcat, const RmcatMetrics& metrics);
-/// Names of the scenarios that have a goal.
+/// Returns the names of the scenarios that have a goal.
 std::vector<std::string> ScenariosWithGoals();
 
 }  // namespace lidar::scream::test

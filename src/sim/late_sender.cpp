@@ -14,10 +14,10 @@ namespace {
 
 constexpr Duration kTick = std::chrono::microseconds{500};
 constexpr double kPacketBits = 9600;
-/// Rate at which the sender's queue drains, relative to the known capacity.
+/// The rate at which the sender's queue drains, relative to the known capacity.
 constexpr double kPacing = 1.25;
 
-/// Times are in seconds, sizes in bits.
+/// All times are in seconds, and all sizes are in bits.
 class LateSender {
  public:
   explicit LateSender(const LateSenderConfig& config)
@@ -59,7 +59,7 @@ class LateSender {
     double bits = 0;
     double bits_left = 0;
     double sent = 0;
-    Slice slice;  // copy of the slice when this packet left
+    Slice slice;  // copy of the slice when this packet was sent
   };
   struct Ack {
     double at = 0;
@@ -121,7 +121,7 @@ class LateSender {
   }
 
   const LateSenderConfig c_;
-  const double period_;  // period of the slices
+  const double period_;  // time between slices
   std::vector<Scan> scans_;
   std::deque<Slice> waiting_;
   std::deque<Packet> network_;
@@ -129,7 +129,7 @@ class LateSender {
   std::vector<double> queue_ms_;
   std::uint64_t made_ = 0;
   double in_flight_ = 0;
-  double allowed_ = 0;  // bits that may leave now
+  double allowed_ = 0;  // bits that may be sent now
   double carried_ = 0, usable_ = 0;
 };
 

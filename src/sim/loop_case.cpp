@@ -57,20 +57,21 @@ scream::test::SimulationConfig ConfigOf(const LoopCase& c, LoopSource* source) {
   return config;
 }
 
-/// Returns the highest rate of the source, with the camera.
+/// Returns the highest rate of the source, including the camera.
 DataRate SourceMax(const LoopCase& c, const LoopReport& report) {
   if (c.frames) return DataRate::Infinite();
   return DataRate::BitsPerSecond(report.max_mbps * 1e6) + (c.camera ? kCameraMax : DataRate());
 }
 
-/// Returns the bits that the link carries and the source can use in `length` after `from`.
+/// Returns the bits that the link can carry and the source can use in the time `length` after
+/// `from`.
 double Usable(const LoopCase& c, const LoopReport& report, Duration from, Duration length) {
   const double link = c.capacity.Between(from, from + length).bits();
   return std::min(link, SourceMax(c, report).bits_per_second() * Seconds(length));
 }
 
 void CountScans(const LoopCase& c, const SimulationResult& result, LoopReport* report) {
-  std::vector<FrameLog> frames;  // of the LiDAR
+  std::vector<FrameLog> frames;  // slices or frames of the LiDAR
   for (const FrameLog& f : result.flows.front().frames)
     if (f.source == 0) frames.push_back(f);
   const std::size_t slices = c.frames ? 1 : c.source.slices;
@@ -111,7 +112,7 @@ void AskOracles(const LoopCase& c, LoopReport* report) {
   report->oracle_at_mean = AskOracle(c.capacity, oracle);
 }
 
-/// Returns delivered bits relative to usable bits. The usable bits are summed over bins of kBin.
+/// Returns the delivered bits relative to the usable bits, which are summed over bins of kBin.
 double Utilisation(const LoopCase& c, const SimulationResult& result, const LoopReport& report) {
   double used = 0, usable = 0;
   for (Duration t = kSettle; t + kBin <= c.duration; t += kBin)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Runs of the whole loop of encoder, sender and link over a changing capacity, and their figures.
+// Runs of the whole loop of encoder, sender and link over a changing capacity, with their figures.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -19,9 +19,10 @@ struct LoopCase {
   std::string name;
   link::Capacity capacity = link::Capacity::Constant(DataRate::BitsPerSecond(8e6));
   SourceOptions source;
-  /// Sends frames, 50 a second, which obey each target exactly.
+  /// If true, the source sends 50 frames per second, whose sizes follow the target exactly.
   bool frames = false;
-  /// Adds frames that obey each target exactly, with half of the LiDAR's priority.
+  /// If true, a camera is added. Its frames follow the target exactly, with half of the LiDAR's
+  /// priority.
   bool camera = false;
   Duration duration = std::chrono::seconds(60);
   Duration rtt = std::chrono::milliseconds(40);
@@ -33,21 +34,22 @@ struct LoopCase {
 struct LoopReport {
   // Scans:
   std::uint64_t captured = 0;
-  std::uint64_t skipped = 0;  // by the encoder
+  std::uint64_t skipped = 0;  // skipped by the encoder
   std::uint64_t complete = 0;
-  std::uint64_t in_time = 0;  ///< of `complete`: each slice arrives within the oracle's max_age
+  /// Complete scans whose slices all arrive within the oracle's max_age.
+  std::uint64_t in_time = 0;
   link::OracleResult oracle_at_min;   // for scans of the lowest bitrate that keeps the error bound
   link::OracleResult oracle_at_mean;  // for scans of the bitrate that the encoder sent
   // Slices:
   scream::test::Percentiles capture_to_cloud_ms;
   // Rates on the wire:
-  double min_mbps = 0, max_mbps = 0;  // of the source
+  double min_mbps = 0, max_mbps = 0;  // lowest and highest rate of the source
   double encoded_mbps = 0;
-  double utilisation = 0;  // relative to what the link carries and the source can use
+  double utilisation = 0;  // relative to what the link can carry and the source can use
   // The network:
   scream::test::Percentiles queue_ms;
   double own_loss = 0;
-  /// Time [s] from a gap's end until the sender fills 80 % of the usable rate for 100 ms.
+  /// The time [s] from the end of a gap until the sender fills 80 % of the usable rate for 100 ms.
   scream::test::Percentiles recovery_s;
   std::size_t gaps = 0;
 
@@ -64,17 +66,18 @@ struct LoopRun {
 
 LoopRun RunLoop(const LoopCase& loop_case);
 
-/// Returns the same case with another scene, and with a start `n` times 7.33 s later in its trace.
-/// Runs over drives are chaotic, so only the mean of several runs is meaningful.
+/// Returns the same case with another scene. The run starts `n` times 7.33 s later in the trace of
+/// the capacity. Runs over drives are chaotic, so that only the mean of several runs is meaningful.
 LoopCase Later(LoopCase loop_case, int n);
 
 struct NamedTrace {
   std::string name;
   link::Capacity capacity;
 };
-/// Returns the traces with regular gaps, and generated drives.
+/// Returns the traces with regular gaps, and the generated drives.
 std::vector<NamedTrace> BuiltInTraces();
-/// Reads a file of `time_s rate_mbps`. For any other file it returns nothing and sets `error`.
+/// Reads a file with lines `time_s rate_mbps`. If the file has another form, sets `error` and
+/// returns nothing.
 std::optional<NamedTrace> ReadTrace(const std::string& path, std::string* error);
 
 }  // namespace lidar::loop

@@ -8,7 +8,7 @@
 
 namespace lidar::loop {
 
-/// Runs the case from `starts` places of its trace; see Later().
+/// Runs the case from `starts` places in its trace (see Later()), and returns the mean figures.
 std::vector<scream::test::Figure> LoopFigures(const LoopCase& loop_case, int starts);
 
 }  // namespace lidar::loop

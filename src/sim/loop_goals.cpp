@@ -12,7 +12,7 @@ constexpr double kLatencyOverOracle_ms = 40;
 constexpr double kUtilisation = 0.70;
 constexpr double kRecovery_s = 0.3;
 constexpr double kFramesUtilisation = 0.80;
-// The late sender (SendLate()) has a queue of 94 ms on a link with frequent gaps.
+// The late sender (see SendLate()) has a queue of 94 ms on a link with frequent gaps.
 constexpr double kFramesQueueFrequentGaps_ms = 99;
 constexpr double kFramesQueueLongGaps_ms = 15;
 constexpr double kFramesQueue_ms = 6;

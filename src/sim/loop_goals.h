@@ -9,13 +9,13 @@
 
 namespace lidar::loop {
 
-/// A goal, and the figure that a run reached.
+/// A goal, and whether a run has reached it.
 struct GoalResult {
   std::string text;  // "complete 98.1 % of the oracle's, 97 % wanted"
   bool holds = false;
 };
 
-/// Goals for the mean of runs from several starts.
+/// The goals for the mean of runs from several starts.
 struct LoopGoals {
   double of_oracle = 0;                 ///< complete scans [%], relative to the oracle's
   double of_fixed = 98.5;               ///< complete scans [%], relative to a fixed step
@@ -26,10 +26,12 @@ struct LoopGoals {
 };
 LoopGoals GoalsOf(const LoopCase& loop_case);
 
-/// Checks the goals of the case. Traces with regular gaps have a goal for the recovery after a gap.
+/// Checks the goals of the case. Traces with regular gaps have a goal for the recovery after a gap,
+/// too.
 std::vector<GoalResult> CheckGoals(const LoopCase& loop_case, const LoopReport& report);
 
-/// Checks that adapting is never worse than the coarsest step within the same error bound.
+/// Checks that an adapting encoder is never worse than the coarsest step within the same error
+/// bound.
 GoalResult CheckAgainstFixed(const LoopReport& report, const LoopReport& fixed);
 
 }  // namespace lidar::loop

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A simulated encoder: the real rate controller, with slices whose sizes follow a formula.
+// A simulated encoder: the real rate controller, with slices whose sizes are computed by a formula.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -11,17 +11,17 @@
 namespace lidar::loop {
 
 struct SourceOptions {
-  std::uint32_t slices = 8;  // 1: whole scans
+  std::uint32_t slices = 8;  // per scan; 1: whole scans
   double scans_per_second = 10;
   double max_error_m = 0.05;
   unsigned intensity_bits = 0;
-  double bits_per_return = 7.1;  // at 1 cm; the lowest rate is then 1.4 Mbit/s
+  double bits_per_return = 7.1;  // at a step of 1 cm; the lowest rate is then 1.4 Mbit/s
   rate::DegradationPreference degradation = rate::DegradationPreference::kMaintainAccuracy;
   bool adapts = true;  // false: always uses the coarsest step
   unsigned seed = 1;
 };
 
-/// Codes slices for a target as dracoenc does. Sizes and bounds are those on the wire.
+/// Encodes slices for a target bitrate as dracoenc does. Sizes and bounds are those on the wire.
 class LoopSource {
  public:
   explicit LoopSource(const SourceOptions& options);

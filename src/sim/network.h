@@ -19,11 +19,11 @@ struct WirePacket {
   std::size_t frame = 0;  // index of the frame in its flow
   bool marker = false;
   DataSize size;
-  std::vector<std::uint8_t> report{};  // bytes of a receiver's report; empty for media
+  std::vector<std::uint8_t> report{};  // bytes of a receiver's report; empty for media packets
   const Route* route = nullptr;        // outlives the packet
-  std::size_t hop = 0;                 // index in `route`
+  std::size_t hop = 0;                 // index of the current link in `route`
   Time sent{};
-  Duration sojourn{0};  // in the queues so far
+  Duration sojourn{0};  // time in queues so far
 };
 
 class Network {
@@ -46,7 +46,7 @@ class Network {
     return next;
   }
 
-  /// Returns the packets that left their last link or were lost, up to `now`.
+  /// Returns the packets that have left their last link, or were lost, up to `now`.
   std::vector<link::Outcome> Deliver(Time now) {
     std::vector<link::Outcome> out;
     for (link::Bottleneck& link : links_) {

@@ -13,7 +13,7 @@ constexpr Duration kRateBin = std::chrono::milliseconds(200);  // RFC 8868, 3
 
 double MegabitsPerSecond(double bytes, Duration time) { return bytes * 8 / 1e6 / Seconds(time); }
 
-/// Returns the bytes of a flow in each bin of the measured time.
+/// Returns the bytes of a flow in each bin of the time that is measured.
 std::vector<double> Bins(const RmcatCase& c, const SimulationResult& result, int flow) {
   const Time from = c.config.forward.origin + c.from;
   std::vector<double> bins(static_cast<std::size_t>((c.until - c.from) / kRateBin));
@@ -42,14 +42,14 @@ bool Contains(const std::vector<int>& flows, int flow) {
   return std::find(flows.begin(), flows.end(), flow) != flows.end();
 }
 
-/// Returns true if `flow` is background traffic on link 0.
+/// Returns true if `flow` is a background flow on link 0.
 bool OthersOnLink0(const RmcatCase& c, int flow) {
   const auto ours = static_cast<int>(c.config.flows.size());
   return flow >= ours && c.config.others[static_cast<std::size_t>(flow - ours)].route.front() == 0;
 }
 
-/// Bytes that link 0 can carry and its flows can use. Background flows can use all, unless they
-/// send files.
+/// Returns the number of bytes that link 0 can carry and its flows can use. Background flows can
+/// use the whole capacity, unless they send files.
 double Usable(const RmcatCase& c) {
   double most = 0;
   for (const int flow : c.forward)

@@ -14,33 +14,33 @@ struct RmcatCase {
   std::string section;  ///< "RFC 8867, 5.1"
   std::string description;
   SimulationConfig config;
-  /// The measured time. Flows may join before it.
+  /// The time that is measured. Flows may start before it.
   Duration from{0}, until{0};
-  /// Our flows whose media pass link 0. Their shares are compared.
+  /// Our flows whose media packets pass through link 0. Their rates are compared.
   std::vector<int> forward = {0};
 };
 
-/// RFC 8867, sections 5 and 6.
+/// Returns the cases of RFC 8867, sections 5 and 6.
 std::vector<RmcatCase> WiredCases(const Parameters& parameters);
-/// RFC 8869, sections 3 and 4.
+/// Returns the cases of RFC 8869, sections 3 and 4.
 std::vector<RmcatCase> WirelessCases(const Parameters& parameters);
 
-/// A video of 30 frames a second whose sizes vary.
+/// Returns a flow of video with 30 frames per second, whose sizes vary.
 FlowConfig RmcatVideo(const Parameters& parameters, Duration start = {}, double max_mbps = 1.5);
 
 struct RmcatMetrics {
-  double utilisation = 0;  ///< relative to what link 0 carries and its flows can use
-  double media_mbps = 0;   ///< mean of the forward flows
-  double variation = 0;  ///< standard deviation of a flow's rate in 200 ms over its mean, averaged
+  double utilisation = 0;  ///< relative to what link 0 can carry and its flows can use
+  double media_mbps = 0;   ///< mean rate of the forward flows
+  double variation = 0;  ///< standard deviation of a flow's rate over 200 ms, relative to its mean
   double jain = 1;       ///< of the forward flows
   Percentiles queue_ms;  ///< of the forward flows' packets
-  Percentiles frame_ms;  ///< creation to last packet
+  Percentiles frame_ms;  ///< from a frame's creation to the arrival of its last packet
   double loss = 0;       ///< of all media packets
-  double dropped = 0;    ///< part of all frames that senders dropped
-  double feedback = 0;   ///< size of reports relative to media
-  double others_mbps = 0;  ///< mean of the other flows while they run
+  double dropped = 0;    ///< fraction of all frames that senders dropped
+  double feedback = 0;   ///< bytes of reports relative to bytes of media
+  double others_mbps = 0;  ///< mean rate of the other flows while they run
   double file_s = 0;       ///< mean time of a file of the other flows
-  /// Delivered bytes of a sender's first stream, relative to its second.
+  /// The delivered bytes of a sender's first stream, relative to those of its second stream.
   std::optional<double> stream_ratio;
 };
 

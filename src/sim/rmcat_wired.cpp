@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// RFC 8867: a video of 0.15 to 1.5 Mbit/s, 50 ms each way, a FIFO of 300 ms, jitter up to 30 ms.
+// The cases of RFC 8867: a video of 0.15 to 1.5 Mbit/s, a delay of 50 ms each way, a FIFO of 300
+// ms, and jitter of up to 30 ms.
 #include <utility>
 
 #include "src/sim/rmcat.h"
@@ -12,7 +13,7 @@ constexpr Duration kOneWay = std::chrono::milliseconds(50);
 constexpr Duration kFifo = std::chrono::milliseconds(300);
 constexpr Duration kJitter = std::chrono::milliseconds(30);
 
-/// The capacity from time `at`.
+/// The capacity from the time `at_s` on.
 struct CapacityStep {
   double at_s = 0;
   double mbps = 0;
@@ -75,7 +76,7 @@ RmcatCase CongestedFeedback(const Parameters& p) {
   return c;
 }
 
-/// Three flows that start 20 s apart.
+/// A case with three flows that start 20 s apart.
 RmcatCase ThreeFlows(const char* section, const char* name, const std::string& description,
                      const Parameters& p) {
   RmcatCase c = Case(section, name, description, link::Capacity::Constant(Mbps(3.5)), 120s);
@@ -124,7 +125,8 @@ RmcatCase ShortTcp(const Parameters& p) {
   return c;
 }
 
-/// The three flows of RFC 8867, 5.8. Measurement begins when the first flow has resumed.
+/// The case of RFC 8867, 5.8, with three flows. The measurement begins when the first flow has
+/// resumed.
 RmcatCase PauseAndResume(const Parameters& p) {
   RmcatCase c =
       ThreeFlows("5.8", "pause_resume", "three flows, the first pauses from 40 to 60 s", p);
@@ -144,7 +146,7 @@ RmcatCase Priorities(const Parameters& p) {
   return c;
 }
 
-/// The first flow passes both links, each other flow passes one.
+/// A case in which the first flow passes through both links, and each other flow through one.
 RmcatCase TwoBottlenecks(const Parameters& p) {
   RmcatCase c =
       Case("6.3", "two_bottlenecks", "one flow over two links, each with a flow of its own",

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Test cases of RFC 8869, which uses system simulators for radios. Here a cell is a capacity over
-// time, and Wi-Fi is a channel that both directions share, with packets in aggregates.
+// The cases of RFC 8869, which uses system simulators for radios. Here a cell is modelled as a
+// capacity over time. Wi-Fi is modelled as a channel that both directions share, and that sends
+// packets in aggregates.
 
 #include "src/link/random.h"
 #include "src/link/trace_maker.h"
@@ -41,7 +42,7 @@ RmcatCase Wireless(const char* section, const std::string& name, const std::stri
   return c;
 }
 
-/// Users come and go, and the cell serves all of them equally.
+/// Returns the capacity of a cell that serves all its users equally, while users come and go.
 link::Capacity SharedCell(double mbps, double mean_users) {
   link::Random random(7);
   std::string text, error;
@@ -57,7 +58,7 @@ link::Capacity SharedCell(double mbps, double mean_users) {
 RmcatCase Cellular(const char* section, const char* name, const std::string& description,
                    link::Capacity capacity, const Parameters& p) {
   RmcatCase c = Wireless(section, name, description, std::move(capacity));
-  c.config.forward.path.jitter = 8ms;  // a radio retransmits
+  c.config.forward.path.jitter = 8ms;  // due to retransmissions of the radio
   c.config.forward.limit = {Mbps(2) * kWirelessFifo, Duration::max()};
   c.config.flows.push_back(RmcatVideo(p, 0s, 5));
   c.forward = {0};
@@ -73,7 +74,8 @@ link::Capacity Drive(double mbps) {
   return *link::Capacity::ParseTrace(MakeDriveTrace(drive), true, &error);
 }
 
-/// A wired bottleneck of 1 Mbit/s each way. The link behind it is faster.
+/// A case with a wired bottleneck of 1 Mbit/s in each direction. The wireless link behind it is
+/// faster.
 RmcatCase WiredBottleneck(const std::string& name, const std::string& description,
                           const Parameters& p) {
   RmcatCase c = Wireless("4.1", name, description, link::Capacity::Constant(Mbps(1)));
@@ -89,7 +91,7 @@ RmcatCase WiredBottleneck(const std::string& name, const std::string& descriptio
   return c;
 }
 
-/// WiredBottleneck() with a background flow from 40 to 80 s on link `on`.
+/// WiredBottleneck() with a background flow on link `on` from 40 to 80 s.
 RmcatCase BesideBackground(bool tcp, std::size_t on, const Parameters& p) {
   const std::string way = on == 0 ? "same_way" : "other_way";
   RmcatCase c =
@@ -105,7 +107,7 @@ RmcatCase BesideBackground(bool tcp, std::size_t on, const Parameters& p) {
     c.config.others.push_back(other);
     return c;
   }
-  // Flows of constant rate are modelled by the capacity that they leave.
+  // A flow of constant rate is modelled by the capacity that it leaves to the other flows.
   std::string error;
   const auto less = *link::Capacity::ParseTrace("0 1\n40 0.7\n80 1\n", false, &error);
   (on == 0 ? c.config.forward : c.config.more_links[0]).capacity = less;
@@ -118,7 +120,8 @@ struct Air {
   double cbr_mbps = 0;
 };
 
-/// All flows share queue and airtime in both directions, and so do their reports.
+/// A case in which all flows and their reports, in both directions, share one queue and the
+/// airtime.
 RmcatCase WirelessBottleneck(const std::string& name, const std::string& description,
                              const Air& air, const Parameters& p) {
   RmcatCase c = Wireless("4.2", name, description, link::Capacity::Constant(Mbps(kAirMbps)));
@@ -129,7 +132,7 @@ RmcatCase WirelessBottleneck(const std::string& name, const std::string& descrip
         *link::Capacity::ParseTrace("0 20\n40 " + less + "\n80 20\n", false, &error);
   }
   c.config.forward.path.burst_interval = kAggregate;
-  c.config.forward.path.jitter = 3ms;  // backoff
+  c.config.forward.path.jitter = 3ms;  // due to the backoff before each transmission
   for (int i = 0; i < air.flows; ++i) {
     c.config.flows.push_back(RmcatVideo(p, i * 103ms));
     c.config.flows.back().return_route = {0};

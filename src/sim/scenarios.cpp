@@ -48,7 +48,8 @@ Scenario Make(const std::string& name, const std::string& description, const Pat
   return s;
 }
 
-/// Returns the same path with slices instead of frames. Its `name` begins with the kind of source.
+/// Returns the same scenario with slices instead of frames. The first part of its `name` is the
+/// kind of source.
 Scenario WithSlices(Scenario s) {
   s.name = "slices" + s.name.substr(s.name.find('_'));
   s.description = "slices: " + s.description;
@@ -66,7 +67,7 @@ DropMetrics MeasureDrop(Time drop, double capacity_mbps, const SimulationResult&
   for (const PacketLog& p : result.packets) {
     if (!p.delivered || p.arrival < drop || p.arrival > drop + std::chrono::seconds(5)) continue;
     m.peak_queue_ms = std::max(m.peak_queue_ms, p.sojourn_ms);
-    // Finds the first time from which the queue stays below 10 ms for 0.2 s.
+    // Finds the first time after which the queue stays below 10 ms for 0.2 s.
     if (p.sojourn_ms >= 10 && (high == drop || p.arrival - high < std::chrono::milliseconds(200)))
       high = p.arrival;
   }
@@ -104,7 +105,7 @@ BesideMetrics MeasureBeside(const Scenario& s, const SimulationResult& result) {
 
 Capacity Constant(double mbps) { return Capacity::Constant(Mbps(mbps)); }
 
-/// Scenarios of paths that reorder, delay or lose packets.
+/// Returns scenarios of paths that reorder, delay or lose packets.
 std::vector<Scenario> PathScenarios(const Path& fast, const Path& slow, const Parameters& p) {
   std::vector<Scenario> all;
   Path step = slow;
@@ -129,7 +130,7 @@ std::vector<Scenario> PathScenarios(const Path& fast, const Path& slow, const Pa
   return all;
 }
 
-/// Scenarios in which the capacity changes.
+/// Returns scenarios in which the capacity changes.
 std::vector<Scenario> ChangingScenarios(const Parameters& p) {
   std::vector<Scenario> all;
   const auto steps = Capacity::Steps(
@@ -149,7 +150,7 @@ std::vector<Scenario> ChangingScenarios(const Parameters& p) {
   return all;
 }
 
-/// Scenarios of queues without marks, which drop what does not fit.
+/// Returns scenarios of queues that mark no packets, but drop those for which there is no room.
 std::vector<Scenario> FifoScenarios(const Parameters& p) {
   std::vector<Scenario> all;
   for (const Ecn ecn : {Ecn::kNotEct, Ecn::kEct1}) {

@@ -19,31 +19,32 @@ struct Scenario {
   double frames_per_second = 50;
   Source source = Source::kFrames;
   SimulationConfig config;
-  Duration settle = std::chrono::seconds(3);  ///< left out of utilisation and queue
-  std::optional<Duration> drop_at;            ///< time of a capacity drop to measure
+  Duration settle = std::chrono::seconds(3);  ///< not part of utilisation and queue delay
+  std::optional<Duration> drop_at;            ///< time of the capacity drop that is measured
   bool beside_draft = false;                  ///< the other flows run the draft without extensions
 };
 
-/// Returns all scenarios, with these parameters at the sender.
+/// Returns all scenarios, in which the sender has these parameters.
 std::vector<Scenario> Scenarios(const Parameters& parameters);
-/// Returns scenarios with policers, silence and clock changes.
+/// Returns scenarios with policers, silent receivers and clock changes.
 std::vector<Scenario> EventScenarios(const Parameters& parameters);
-/// Returns scenarios in which our flow shares a link with other flows, or with flows of ours at
-/// other phases.
+/// Returns scenarios in which our flow shares a link with other flows, or with flows of ours whose
+/// frames are sent at other phases.
 std::vector<Scenario> BesideScenarios(const Parameters& parameters);
 std::optional<Scenario> FindScenario(const std::string& name, const Parameters& parameters);
 
 struct DropMetrics {
   double peak_queue_ms = 0;
-  double recovered_s = 0;   ///< until the queue is below 10 ms and stays there for 0.2 s
-  double below_rate_s = 0;  ///< until the rate sent (over 50 ms) is below the new capacity
+  double recovered_s = 0;  ///< from the drop until the queue stays below 10 ms for 0.2 s
+  /// From the drop until the rate sent (over 50 ms) is below the new capacity.
+  double below_rate_s = 0;
 };
 
-/// Figures of the mean flow of each kind.
+/// The mean figures of our flows, and of the other flows.
 struct BesideMetrics {
   double ours_mbps = 0, theirs_mbps = 0;
   double their_loss = 0;
-  /// Returns the larger of the two rates divided by the smaller.
+  /// Returns the larger of the two rates, divided by the smaller one.
   double ratio() const {
     return std::max(ours_mbps, theirs_mbps) / std::max(1e-9, std::min(ours_mbps, theirs_mbps));
   }
@@ -55,7 +56,7 @@ struct ScenarioMetrics {
   Percentiles frame_ms;
   double own_loss = 0;
   double jain = 1;     ///< of all flows
-  double start_s = 0;  ///< until 90 % of the capacity was delivered within 100 ms
+  double start_s = 0;  ///< from the start until 90 % of the capacity was delivered within 100 ms
   double start_peak_ms = 0;
   double frames_dropped = 0;
   double feedback_kbps = 0;

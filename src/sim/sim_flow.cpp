@@ -11,7 +11,7 @@ constexpr std::int64_t kMinPacket = 60;
 constexpr std::int64_t kIpUdp = 28;
 constexpr std::uint32_t kEpochOfRestart = 0x89ABCDEF;
 
-/// Configures the stream for an encoder's bounds as screamtx does.
+/// Sets the stream's bitrates for the bounds of an encoder, as screamtx does.
 StreamConfig WithBounds(StreamConfig stream, const EncoderBounds& bounds) {
   if (bounds.max > DataRate{}) stream.max_bitrate = std::min(stream.max_bitrate, bounds.max);
   stream.min_bitrate = std::min(stream.min_bitrate, stream.max_bitrate);
@@ -21,7 +21,7 @@ StreamConfig WithBounds(StreamConfig stream, const EncoderBounds& bounds) {
   return stream;
 }
 
-/// Returns true once, in the first call after `at`.
+/// Returns true once: in the first call after the time `at`.
 bool Due(Duration since_start, Duration* at) {
   if (since_start <= *at) return false;
   *at = kNever;
@@ -72,7 +72,7 @@ Time Flow::NextEvent(Time now) {
   return std::max(next, stalled_until_);
 }
 
-/// Applies the configured events that are due.
+/// Applies those of the configured events that are due.
 void Flow::Happen(Time now) {
   const Duration t = now - config_.start;
   if (Due(t, &config_.receiver_restart)) {
@@ -209,7 +209,8 @@ void Flow::MakeFrame(Time now, std::size_t index) {
   result_.frames.push_back(frame);
 }
 
-/// Returns the next frame, whose size is that on the wire; 0 if the encoder leaves it out.
+/// Returns the next frame. Its size is the size on the wire, or 0 if the encoder leaves the frame
+/// out.
 EncodedFrame Flow::Encode(Time now, std::size_t index) {
   SourceConfig& config = config_.sources[index];
   SourceState& source = sources_[index];
@@ -247,7 +248,7 @@ void Flow::Packetize(Time now, SourceState* source, const EncodedFrame& encoded,
   }
 }
 
-/// Sends targets to encoders as often as screamtx does.
+/// Sends targets to the encoders as often as screamtx does.
 void Flow::TellEncoders(Time now) {
   for (SourceState& source : sources_) {
     const DataRate target = controller_->target_bitrate(source.stream);
@@ -255,7 +256,8 @@ void Flow::TellEncoders(Time now) {
   }
 }
 
-/// Counts the remaining packets of a frame that began to leave and has waited too long.
+/// Returns how many packets remain of a frame of which a part was sent, if they have waited too
+/// long, or else 0.
 std::size_t Flow::StuckPackets(const SourceState& source, Time now) const {
   if (source.queue.empty() || now - source.queued.front() < config_.longest_stay) return 0;
   const std::size_t frame = source.queue.front().frame;

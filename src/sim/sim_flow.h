@@ -30,17 +30,17 @@ class Flow {
   struct SourceState {
     StreamId stream = 0;
     std::uint32_t ssrc = 0;
-    std::uint16_t seq = 65000;  // wraps around early in a run
+    std::uint16_t seq = 65000;  // close to the wrap, which is then early in a run
     Time next_frame{};
     std::deque<WirePacket> queue;
-    std::deque<Time> queued;  // when the packets in `queue` were queued
+    std::deque<Time> queued;  // queuing times of the packets in `queue`
     TargetNotifier notifier;
     DataRate told;  // last target that was sent to the encoder
   };
 
   void StartSender();
   void Happen(Time now);
-  /// Clocks of the two ends, which a run may change.
+  /// The clocks of the two ends, which a run may change.
   Time ToSender(Time t) const { return t + sender_offset_; }
   Time ToReceiver(Time t) const {
     return t + receiver_offset_ + FromSeconds(Seconds(t - config_.start) * config_.receiver_drift);
@@ -70,7 +70,7 @@ class Flow {
   rtcp::CcfbParser parser_;
   link::Random random_;
   int index_;
-  std::uint32_t generation_ = 0;  // counts restarts of the sender
+  std::uint32_t generation_ = 0;  // number of restarts of the sender
   std::vector<SourceState> sources_;
   Time asked_{};
   Time wake_{};

@@ -5,7 +5,7 @@
 
 namespace lidar {
 
-/// Nonzero, so that it differs from an unset time.
+/// The start of simulated time. It is not zero, so that it differs from an unset time.
 constexpr Time kStart{std::chrono::seconds(100)};
 
 constexpr DataRate Mbps(double megabits) { return DataRate::BitsPerSecond(megabits * 1e6); }

@@ -99,7 +99,7 @@ class Simulation {
   Network network_;
   link::Random report_loss_;
   Time next_sample_;
-  std::multimap<Time, link::Outcome> behind_;  // packets that left the last link, by arrival
+  std::multimap<Time, link::Outcome> behind_;  // packets after the last link, by time of arrival
   std::vector<std::unique_ptr<Flow>> flows_;
   std::vector<std::unique_ptr<TcpFlow>> others_;
   SimulationResult result_;

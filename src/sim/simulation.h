@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Senders, a bottleneck and receivers in simulated time: the whole control loop, deterministic.
+// Senders, a bottleneck and receivers in simulated time: the whole control loop, which is
+// deterministic.
 #pragma once
 #include <functional>
 #include <optional>
@@ -15,7 +16,7 @@ namespace lidar::scream::test {
 
 constexpr Duration kNever = Duration::max();
 
-/// The least and the highest useful bitrate of an encoder, on the wire.
+/// The lowest and the highest useful bitrate of an encoder, on the wire.
 struct EncoderBounds {
   DataRate min;
   DataRate max;
@@ -24,70 +25,71 @@ struct EncoderBounds {
 struct EncodedFrame {
   DataSize size;                        ///< on the wire; 0: the encoder leaves the frame out
   std::optional<EncoderBounds> bounds;  ///< set if they have changed
-  /// Frames of one group are useful only together.
+  /// Frames of the same group are useful only together.
   std::optional<std::uint32_t> group = std::nullopt;
 };
 
-/// An encoder that obeys its target, and the stream that it feeds.
+/// An encoder that follows its target, and the stream that it feeds.
 struct SourceConfig {
   StreamConfig stream;
   double frames_per_second = 50;
   Duration stop_at = kNever;
-  /// No frames between these times of the flow.
+  /// The source sends no frames between these times of the flow.
   Duration pause_from = kNever, pause_until = kNever;
   double frame_jitter = 0;  ///< frame sizes vary by up to this fraction, uniformly
-  /// Factor of the encoder's output relative to its target, over the flow's time.
+  /// The encoder's output relative to its target, as a function of the flow's time.
   std::function<double(Duration)> obedience;
-  /// Replaces jitter and obedience: makes the next frame for the present target.
+  /// Replaces frame_jitter and obedience: returns the next frame for the current target.
   std::function<EncodedFrame(DataRate)> encoder;
 };
 
-/// Indices of the links that packets pass, in order.
+/// The indices of the links that packets pass through, in order.
 using Route = std::vector<std::size_t>;
 
-/// A sender and its receiver. Times are relative to the flow's start.
+/// A sender and its receiver. Times are relative to the start of the flow.
 struct FlowConfig {
   Parameters parameters;
   Route route{0};
-  /// Links that reports pass. Without links reports take `return_delay`.
+  /// The links that reports pass through. If there are none, reports take `return_delay`.
   Route return_route;
-  /// Delay each way, in addition to that of the links.
+  /// The delay in each direction, in addition to the delay of the links.
   Duration access_delay{0};
   std::vector<SourceConfig> sources{1};
   rtcp::FeedbackConfig feedback;
   Time start{};
   Duration stop_after = kNever;
   bool drop_late = true;
-  /// A frame that began to leave is dropped once its first waiting packet has waited this long.
+  /// A frame of which a part was sent is dropped when its next packet has waited this long.
   Duration longest_stay = std::chrono::milliseconds(1000);
-  /// The receiver restarts without state, and with another clock epoch.
+  /// The time at which the receiver restarts without state, and with another clock epoch.
   Duration receiver_restart = kNever;
-  /// Another sender, with new SSRCs, continues the flow.
+  /// The time at which another sender, with new SSRCs, continues the flow.
   Duration sender_restart = kNever;
-  /// Time at which sequence numbers jump back by `jump_back`, modulo 2^16.
+  /// The time at which sequence numbers jump back by `jump_back`, modulo 2^16.
   Duration sequence_jump = kNever;
   std::uint16_t jump_back = 0;
-  /// false: reports hold no arrival times, as RFC 8888 allows.
+  /// If false, reports have no arrival times, which RFC 8888 permits.
   bool arrival_times = true;
-  /// Time of the event route-changed at the sender.
+  /// The time at which the sender gets the signal route-changed.
   Duration route_change = kNever;
-  /// Time at which the clocks jump, and by how much.
+  /// The time at which the clocks jump, and the amounts by which they jump.
   Duration clock_jump = kNever;
   Duration sender_jump{0}, receiver_jump{0};
-  double receiver_drift = 0;  ///< part by which the receiver's clock is too fast
-  /// The machine stops for up to this time, at this mean interval; packets still arrive.
+  double receiver_drift = 0;  ///< fraction by which the receiver's clock is too fast
+  /// The sender and the receiver stop for up to `stall`, on average every `stall_every`. Packets
+  /// still arrive.
   Duration stall{0};
   Duration stall_every = std::chrono::seconds(1);
-  Duration wakeup_delay{0};  ///< greatest delay of the pacing thread's wake-ups
+  Duration wakeup_delay{0};  ///< greatest delay of a wake-up of the pacing thread
 };
 
-/// Files that a flow sends in sequence, each over a new connection.
+/// The files that a flow sends one after the other, each over a new connection.
 struct FileConfig {
-  DataSize shortest, longest;  ///< sizes are uniform between these
-  Duration mean_pause{0};      ///< exponentially distributed
+  DataSize shortest, longest;  ///< file sizes are uniformly distributed between these
+  Duration mean_pause{0};      ///< pauses are exponentially distributed
 };
 
-/// A greedy background flow that begins at the time `start` of the run.
+/// A greedy background flow that starts at the time `start` of the run.
 struct TcpConfig {
   TcpKind kind = TcpKind::kCubic;
   Duration start{0};
@@ -95,7 +97,8 @@ struct TcpConfig {
   double slow_start_threshold = 1e9;  ///< [packets]
   Duration stop = kNever;
   Route route = {0};
-  std::optional<FileConfig> files = std::nullopt;  ///< set: files instead of an endless transfer
+  /// If set, the flow sends files instead of an endless transfer.
+  std::optional<FileConfig> files = std::nullopt;
 };
 
 struct SimulationConfig {
@@ -103,16 +106,16 @@ struct SimulationConfig {
   std::vector<link::BottleneckConfig> more_links;  ///< links 1, 2, ...
   Duration return_delay{0};
   double return_loss = 0;
-  /// Two of three packets sent between these times are lost.
+  /// Two out of three packets that are sent between these times are lost.
   Duration loss_from = kNever, loss_until = kNever;
-  /// The return path carries no packet between these times.
+  /// The return path carries no packets between these times.
   Duration return_outage_from = kNever, return_outage_until = kNever;
-  /// A change of route: the forward delay is longer by this after `longer_from`.
+  /// A change of the route: after `longer_from`, the forward delay is longer by `longer_by`.
   Duration longer_by{0};
   Duration longer_from = kNever;
   Duration duration = std::chrono::seconds(40);
   std::vector<FlowConfig> flows{1};
-  std::vector<TcpConfig> others;  ///< their flows follow ours in the packets' log
+  std::vector<TcpConfig> others;  ///< their flows follow our flows in the log of packets
   Duration sample_interval = std::chrono::milliseconds(10);
 };
 
@@ -123,7 +126,7 @@ Percentiles Summarise(std::vector<double> values);
 
 struct PacketLog {
   Time sent{}, arrival{};
-  double sojourn_ms = 0;  ///< over all queues
+  double sojourn_ms = 0;  ///< sum over all queues
   int flow = 0;
   int source = 0;
   std::int64_t bytes = 0;
@@ -138,13 +141,13 @@ struct Sample {
   std::vector<DataRate> targets;  ///< of the sources
 };
 
-/// A frame from its encoder to its arrival.
+/// A frame, from its encoding to its arrival.
 struct FrameLog {
   Time created{};
   int source = 0;
   std::int64_t bytes = 0;  ///< 0: the encoder left the frame out
   int packets = 0;
-  int delivered = 0;  ///< number of `packets` that arrived
+  int delivered = 0;  ///< packets that have arrived
   Time arrival{};     ///< of the last packet that arrived
 
   bool complete() const { return packets > 0 && delivered == packets; }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A simulated codec response: sizes fall with the step, differ by sector, drift from scan to scan
-// and never match the model's coefficients.
+// A simulated codec. Sizes fall with the step, differ by sector, drift from scan to scan, and never
+// match the model's coefficients.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -49,9 +49,9 @@ class SyntheticCodec {
     const double returns = f.returns * std::pow(keep, 0.85);
     const double geometry =
         20 + returns * std::exp2(log2) * sector * std::exp(log_complexity_) * slice_noise_ / 8;
-    // Real captures have four bits a return for 8-bit intensities, 1.2 for 5-bit ones.
+    // Real captures need four bits per return for 8-bit intensities, and 1.2 for 5-bit intensities.
     const double intensity = returns * 4 * std::pow(s.intensity_bits / 8.0, 2.5) / 8;
-    // NaN features give an empty slice.
+    // NaN features result in an empty slice.
     const auto bytes = [](double b) {
       return DataSize::Bytes(
           static_cast<std::int64_t>(std::isfinite(b) ? std::clamp(b, 0., 1e12) : 0));

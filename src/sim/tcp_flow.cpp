@@ -22,7 +22,7 @@ TcpFlow::TcpFlow(const TcpConfig& config, int index, Time origin)
   if (config.files) BeginFile();
 }
 
-/// Creates the sender of the next file.
+/// Creates the sender of the next file, which starts after a pause.
 void TcpFlow::BeginFile() {
   const double pause = -std::log(1 - random_.Uniform()) * Seconds(config_.files->mean_pause);
   start_ += FromSeconds(pause);
@@ -63,7 +63,7 @@ void TcpFlow::Step(Time now, Network* network) {
     if (before > sender_.outstanding()) ++acked_;
     if (acked_ >= file_packets_) EndFile(now);
   }
-  if (now < start_) return;  // the pause after a file
+  if (now < start_) return;  // the pause after a file has not ended
   sender_.OnTimer(now);
   while (MoreToSend(now) && sender_.MaySend(now)) SendOne(now, network);
 }

@@ -37,13 +37,13 @@ class TcpFlow {
 
   TcpConfig config_;
   int index_;
-  Time start_;  // start of the file
+  Time start_;  // start of the current file
   Time stop_;
   TcpSender sender_;
   link::Random random_;
   int connection_ = 0;
   std::size_t file_packets_ = SIZE_MAX;
-  std::size_t acked_ = 0;  // acknowledged packets of the file
+  std::size_t acked_ = 0;  // acknowledged packets of the current file
   std::deque<Ack> acks_;
   Time integrated_;
   TcpResult result_;

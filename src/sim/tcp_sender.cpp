@@ -73,7 +73,7 @@ void TcpSender::OnAck(Time now, std::uint64_t id, bool ce) {
 void TcpSender::Grow(Time now, Duration rtt, std::uint64_t id, bool ce) {
   const bool prague = kind_ == TcpKind::kPrague;
   if (ce && !prague) {
-    if (id < recover_) return;  // RFC 3168: at most once a round trip
+    if (id < recover_) return;  // RFC 3168: at most one reduction per round trip
     recover_ = next_id_;
     slow_start_ = false;
     control_->OnLoss();
@@ -104,7 +104,7 @@ void TcpSender::DetectLoss(std::uint64_t acked) {
   control_->OnLoss();
 }
 
-/// RFC 6298.
+/// Updates the round-trip time as in RFC 6298.
 void TcpSender::MeasureRtt(Duration rtt) {
   if (s_rtt_ == Duration{0}) {
     s_rtt_ = rtt;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The sender of a greedy flow: TCP as it appears to a queue, without clock and socket.
+// The sender of a greedy flow: TCP as a queue sees it, without a clock and a socket.
 #pragma once
 #include <cstdint>
 #include <deque>
@@ -10,24 +10,24 @@
 
 namespace lidar::scream::test {
 
-/// Each packet has its own acknowledgement. A packet is lost after acknowledgements of three later
-/// ones. Lost packets are not sent again: new data take their place.
+/// A TCP sender. Each packet has its own acknowledgement. A packet is lost if three later packets
+/// were acknowledged. Lost packets are not sent again, but new data are sent instead.
 class TcpSender {
  public:
   TcpSender(TcpKind kind, Time start, double slow_start_threshold);
 
-  /// Returns the time of the next OnTimer() or SendPacket(); Time::max() if the sender must wait
+  /// Returns the time of the next OnTimer() or SendPacket(), or Time::max() if the sender must wait
   /// for an acknowledgement.
   Time NextEvent() const;
   bool MaySend(Time now) const;
-  /// Accounts for a packet that leaves now. Returns its number.
+  /// Call it for each packet that is sent. Returns the packet's number.
   std::uint64_t SendPacket(Time now);
   void OnAck(Time now, std::uint64_t id, bool ce);
   void OnTimer(Time now);
 
   double window() const { return control_->window; }
   std::size_t outstanding() const { return outstanding_; }
-  /// Time at which acknowledgements become overdue.
+  /// Returns the time at which acknowledgements become overdue.
   Time Timeout() const;
 
  private:
@@ -48,7 +48,7 @@ class TcpSender {
   std::deque<InFlight> in_flight_;
   std::size_t outstanding_ = 0;
   std::uint64_t next_id_ = 0;
-  std::uint64_t recover_ = 0;  // losses of earlier packets do not shrink the window again
+  std::uint64_t recover_ = 0;  // losses of packets before this one do not reduce the window again
   Duration s_rtt_{0}, rtt_var_{0};
   Time last_progress_;
   Time next_paced_;

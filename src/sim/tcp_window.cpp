@@ -17,7 +17,7 @@ class Reno final : public TcpWindow {
   void OnTimeout() override { window = kMinWindow; }
 };
 
-/// Cubic with the names of RFC 9438.
+/// Cubic, with the names that RFC 9438 uses.
 class Cubic final : public TcpWindow {
  public:
   void OnAck(Time now, Duration rtt, bool) override {
@@ -59,8 +59,8 @@ class Cubic final : public TcpWindow {
   double w_max_ = 0, k_ = 0, w_est_ = 0, cwnd_prior_ = 0;
 };
 
-/// Grows as slowly as a flow whose RTT is at least the virtual RTT. Decreases by half the marked
-/// fraction.
+/// Prague. If the round trip is short, the window grows only as fast as with the virtual RTT. A
+/// mark reduces the window by half of the fraction of marked packets.
 class Prague final : public TcpWindow {
  public:
   void OnAck(Time now, Duration rtt, bool ce) override {

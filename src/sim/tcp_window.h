@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Congestion windows of background flows: Reno, Cubic and Prague.
+// The congestion windows of background flows: Reno, Cubic and Prague.
 #pragma once
 #include <memory>
 
@@ -13,19 +13,19 @@ enum class TcpKind {
   kPrague  ///< draft-briscoe-iccrg-prague-congestion-control
 };
 
-/// A congestion window in packets. TcpSender does slow start for all kinds.
+/// A congestion window in packets. TcpSender does the slow start for all kinds.
 class TcpWindow {
  public:
   virtual ~TcpWindow() = default;
-  /// A packet was acknowledged in congestion avoidance.
+  /// Called when a packet is acknowledged after slow start.
   virtual void OnAck(Time now, Duration rtt, bool ce) = 0;
-  /// Packets were lost; called at most once a round trip.
+  /// Called when packets are lost, but at most once per round trip.
   virtual void OnLoss() = 0;
-  /// Acknowledgements are overdue.
+  /// Called when acknowledgements are overdue.
   virtual void OnTimeout() = 0;
-  /// The first mark ends slow start.
+  /// Called for the first mark, which ends slow start.
   virtual void OnFirstMark() { OnLoss(); }
-  double window = 10;  ///< RFC 6928
+  double window = 10;  ///< initial window of RFC 6928
 };
 
 std::unique_ptr<TcpWindow> MakeTcpWindow(TcpKind kind);
