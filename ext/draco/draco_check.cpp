@@ -57,8 +57,8 @@ bool CheckAttributes(ByteReader* reader, const DracoLimits& limits) {
   return true;
 }
 
-/// Checks the number of points that the kd-tree repeats. If it were too large, libdraco would need
-/// seconds, but no additional memory.
+/// Checks the header of the kd-tree. The header has the number of points a second time. If this
+/// number were larger than `points`, libdraco would decode for seconds.
 bool CheckKdTree(ByteReader* reader, std::uint32_t points) {
   const std::uint8_t level = reader->U8();
   const std::uint32_t bit_length = reader->Le32();

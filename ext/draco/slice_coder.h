@@ -59,7 +59,7 @@ class SliceEncoder {
   /// Loads the points of `raw` for Encode(). `raw` must have whole points, and whole beams for
   /// kRange.
   void Load(ByteView raw, std::uint32_t first_column, bool with_intensity);
-  /// Returns the number of loaded returns.
+  /// Returns how many LiDAR returns the loaded slice has.
   std::size_t returns() const { return range_ ? range_->returns() : xyz_.cloud().size(); }
   /// Returns the longest range, or the longest side of the bounding box of the points [m].
   double extent_m() const { return range_ ? range_->extent_m() : LongestSide(xyz_.cloud()); }

@@ -11,9 +11,9 @@ namespace lidar::dds {
 /// A reference to a domain. Each object that owns entities in the domain needs one.
 class Domain {
  public:
-  /// Joins a domain. Returns null and sets `why` if Cyclone refuses the configuration. This may be
-  /// the user's fault, because CYCLONEDDS_URI is appended to our configuration, which only allows
-  /// large messages.
+  /// Joins a domain. Returns null and sets `why` if Cyclone refuses the configuration. The
+  /// configuration consists of our setting, which raises the limit for the size of messages, and
+  /// the user's CYCLONEDDS_URI, which may be wrong.
   static std::unique_ptr<Domain> Join(std::uint32_t id, std::string* why);
   ~Domain();
   Domain(const Domain&) = delete;

@@ -70,8 +70,9 @@ Time PeerLatch::LastHeard() const {
   return last;
 }
 
-/// Accepts a packet that arrived by `link`. If the first link is silent, `link` becomes the first
-/// link, because only packets of the first link count for the standing of the peer.
+/// Accepts a packet that the peer sent over its further link `link`. If the peer's first link is
+/// silent, swaps the two links: only packets of the first link count for the peer's standing (see
+/// Standing).
 PeerLatch::Verdict PeerLatch::OnLinkPacket(Time now, const Packet& packet, Link* link) {
   link->at = now;
   if (now - peer_.at >= kPeerSilence) {

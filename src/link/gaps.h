@@ -25,10 +25,10 @@ struct RecoveryConfig {
   double share = 0.8;
 };
 
-/// Returns, for each gap, the time from its end until the sender has recovered [s]. A sender has
-/// recovered when it uses, for a tenth of a second, the fraction `share` of what the link can carry
-/// and the source can use. The time is at most 5 s, and is cut off at the next gap. A gap is left
-/// out if the next gap begins within 0.2 s.
+/// Returns, for each gap, the time from its end until the sender has recovered [s]. The usable rate
+/// is the capacity of the link, but at most the highest rate of the source. A sender has recovered
+/// once it sends at least `share` times the usable rate for a tenth of a second. The time is at
+/// most 5 s, and ends at the next gap. A gap is left out if the next gap begins within 0.2 s.
 std::vector<double> RecoveryAfterGaps(const Capacity& capacity,
                                       const std::vector<SentPacket>& packets,
                                       const RecoveryConfig& config);

@@ -26,9 +26,10 @@ constexpr int kLeastTaught = 5;  // number of scans
 /// weight, so that their mean is the first estimate.
 constexpr double kRestShare = 0.02;
 constexpr int kLeastForcesTaught = 10;  // number of scans
-/// The greatest squared error of the path that trusted forces predict, relative to the squared
-/// error of the path at the mean velocity. The limit exceeds 1, because scans have errors if they
-/// were corrected without forces. Forces with reversed axes have four times the error.
+/// The forces that the IMU measures are trusted if they predict the path well. Their squared error
+/// may be at most this many times the squared error of a prediction by the mean velocity. The limit
+/// is above 1, because poses that were found without forces have errors themselves. If the axes of
+/// the IMU are reversed, the ratio is four.
 constexpr double kMostForceError = 2;
 /// Half of gravity [m/s^2]. At rest, an IMU without an accelerometer or with other units shows less
 /// than this.

@@ -64,8 +64,8 @@ class SizeModel {
                          const EncodedSize& encoded) = 0;
 };
 
-/// The allowed steps that are nearest to a step on both sides. They are equal if the step itself is
-/// allowed, or if there is no allowed step on one side.
+/// The two allowed steps next to a wanted step: the nearest finer one and the nearest coarser one.
+/// They are equal if the wanted step itself is allowed, or if only one side has an allowed step.
 struct AllowedSteps {
   double finer_m = 0;
   double coarser_m = 0;

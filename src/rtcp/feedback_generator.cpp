@@ -188,9 +188,9 @@ std::optional<CongestionFeedback> FeedbackGenerator::Take(Time at) {
   return report;
 }
 
-/// Returns the first number of a block that has room for `max_metrics`. If there is no room for all
-/// packets, new packets and late packets take precedence over packets that were already reported
-/// (the overlap).
+/// Returns the sequence number with which a block of `max_metrics` packets begins. The block
+/// repeats some packets that were already reported (the overlap), if new and late packets leave
+/// room.
 std::int64_t FeedbackGenerator::FirstToReport(const Source& source,
                                               std::int64_t max_metrics) const {
   const std::int64_t fresh = std::min(source.next_report, source.lowest_new);

@@ -102,8 +102,8 @@ void Reassembler::Complete(PendingMap::iterator it, std::vector<ReceivedSlice>* 
     Emit(it, std::move(config), out);
 }
 
-/// Counts slices before `p` as skipped. `skipped` is as in SliceInfo. A slice of which a packet has
-/// arrived is not skipped.
+/// Counts the slices as skipped that the sender skipped before `p`: bit n of `skipped` stands for
+/// the slice that is n + 1 slices before `p`. A slice of which a packet has arrived does not count.
 void Reassembler::BookSkipped(SlicePosition p, std::uint64_t skipped) {
   for (auto at = ledger_.Before(p); at && skipped != 0; at = ledger_.Before(*at), skipped >>= 1)
     if ((skipped & 1) != 0 && pending_.count(*at) == 0) ledger_.Skip(*at);

@@ -100,7 +100,8 @@ struct Parameters {
   int fast_increase_rounds = 3;
   /// Slope of fast growth above the inflection point (8 in the draft).
   double fast_increase_slope = 3;
-  /// The capacity counts as fallen if the target is above this fraction of the measured capacity.
+  /// The capacity counts as fallen if the target bitrate is at least this many times the measured
+  /// capacity.
   double drop_threshold = 0.9;
   /// The value of drop_threshold if the measurement is unsure: it is shorter than both a frame
   /// period and VIRTUAL_RTT, fewer than half of its packets are marked, or the last reaction is

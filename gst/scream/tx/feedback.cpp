@@ -82,8 +82,9 @@ bool Take(GstLidarScreamTx* self, const rtcp::CongestionFeedback& report, GSocke
     state.controller->OnRouteChange(now);
   }
   if (result == scream::FeedbackResult::kAccepted) state.pacing.OnAccepted(now);
-  // A report that comes from TWCC does not name a receiver. The packets have arrived at the RTP
-  // session of the receiver, but elements behind the session may still drop them.
+  // Receipts are not kept for reports that come from TWCC; such reports name no receiver. Packets
+  // in these reports have reached the RTP session of the receiver, but elements behind the session
+  // may still drop them.
   if (result == scream::FeedbackResult::kAccepted && report.sender_ssrc != 0)
     KeepReceipts(state, report);
   state.reporter.Evaluate(now);

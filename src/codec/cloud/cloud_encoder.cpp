@@ -68,7 +68,7 @@ PixelErrors CheapestErrors(PlacedCloud cloud, double error_m) {
   PixelErrors best;
   double least = 0;
   for (const double part : {1.0, 0.95, 0.9, -0.95, -0.85}) {
-    // Bending beams need residuals.
+    // Pixels of bending beams are always coded with residuals, which a negative `part` stands for.
     if (bends && part > 0) continue;
     PixelErrors errors;
     errors.error_m = error_m;

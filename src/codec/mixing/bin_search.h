@@ -78,8 +78,8 @@ class BinSearch {
         const std::int64_t most = found_ > 0 ? trials_[0].cost + kMostBehind : INT64_MAX;
         Offer({ways_[k].cost + part.CostOf(bin, most - ways_[k].cost), bin, k});
       };
-      // Tries the bin that is probably the cheapest first. The cost of another bin is then not
-      // computed to the end if it gets much higher.
+      // Begins with the bin that is probably the cheapest. CostOf() of a dearer bin then returns
+      // early, once the cost exceeds `most`.
       const std::int32_t likely = std::clamp(part.Predicted(), first, last);
       try_bin(likely);
       for (std::int32_t bin = first; bin <= last; ++bin)

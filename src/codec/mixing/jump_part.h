@@ -33,8 +33,8 @@ class JumpPart {
   /// damaged.
   std::uint32_t Code(std::uint32_t distance, const JumpContext& context) {
     context_ = &context;
-    // An Exp-Golomb code: first the length of the distance, then the bits below its highest bit.
-    // Each bit that is coded is 1 if the distance is at least `Split::middle`.
+    // An Exp-Golomb code: first the number of bits of `distance`, in unary, then the bits below the
+    // highest one. Each CodeNode() codes whether `distance` is at least the middle of its Split.
     unsigned length = 0;
     const auto last = static_cast<unsigned>(BitLength(distance) - 1);
     while (CodeNode(length < last, std::min(length, kLengthNodes - 1), context.gap_class,

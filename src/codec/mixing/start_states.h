@@ -52,7 +52,7 @@ struct StartStates {
   }
 };
 
-/// Returns the states of this version, from the table that is compiled in.
+/// Returns the start states that are compiled into this library.
 const StartStates& Trained();
 
 /// Returns the table (start_table.txt) that StartStates::Write() made.

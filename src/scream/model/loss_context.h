@@ -43,8 +43,9 @@ class LossContext {
     const auto index = static_cast<std::size_t>(after - recent_.begin());
     return LongerOfPair(std::clamp<std::size_t>(index, 1, recent_.size() - 1));
   }
-  /// Returns the rank of `qdelay` among pairs of packets. Pairs are compared because `qdelay` is
-  /// the longer delay of a pair, too, which exceeds most single delays.
+  /// Returns the rank of `qdelay` from 0 to 1: the fraction of the recent pairs of packets whose
+  /// longer delay is below `qdelay`. `qdelay` comes from QdelayAround(), which also returns the
+  /// longer delay of a pair.
   double Rank(Duration qdelay) const {
     double below = 0;
     for (std::size_t i = 1; i < recent_.size(); ++i) {

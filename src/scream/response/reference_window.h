@@ -15,8 +15,8 @@ namespace lidar::scream {
 struct Boldness {
   double growth = 0.25;
   double backoff = 0.25;
-  /// Mean rate of packets relative to the window's rate. Without other flows it is slightly above
-  /// 1, so that a frame of the requested size does not wait.
+  /// The mean rate at which packets leave, divided by ref_wnd / RTT. Without other flows it is
+  /// slightly above 1, so that the sender has sent a frame before the next frame comes.
   double pace = 1.005;
 };
 

@@ -10,8 +10,8 @@ namespace lidar::worker {
 namespace {
 
 constexpr int kRenewals = 4;  // number of writes during one lease
-/// Other workers wait longer than the lease, by 1 / kMargin of it. Steady clocks differ by far less
-/// than this.
+/// Other workers wait for 1 + 1 / kMargin times the duration of the lease, because their clocks may
+/// be faster than the owner's. The rates of steady clocks differ by far less than 1 / kMargin.
 constexpr int kMargin = 20;
 /// A worker whose places are all in use waits for this share of a lease before it takes a free
 /// robot. A worker with fewer robots waits less, so that it takes the robot first.

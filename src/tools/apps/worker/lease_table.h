@@ -61,7 +61,7 @@ class LeaseTable {
   /// Gives up a robot, and does not try to lease it again before `pause` has passed.
   void Drop(const std::string& robot, Duration pause, Time now);
   /// Gives up a robot whose pipeline fails, so that another worker may lease it. This worker tries
-  /// again after two leases, but not before `least` has passed.
+  /// again after twice the duration of a lease, or after `least` if `least` is longer.
   void LeaveToOthers(const std::string& robot, Duration least, Time now);
   /// Ends the leases that have expired, and returns the writes to send now.
   std::vector<Write> Poll(Time now);

@@ -154,8 +154,8 @@ GstPadProbeReturn RobotPipeline::OnCloud(GstBuffer* buffer) {
   return GST_PAD_PROBE_OK;
 }
 
-/// Notes that the scan of the record's pose is missing. Odometry then lacks the motion from that
-/// scan to the first scan that it gets.
+/// Notes that the stream does not contain the scan at whose pose the record ends. Odometry begins
+/// at this pose, but with a later scan, so the motion between the two scans is missing.
 void RobotPipeline::NoteLateBegin(GstClockTime captured) {
   begun_late_ = true;
   const GstClockTime since = begin_->time;

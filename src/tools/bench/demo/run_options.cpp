@@ -14,8 +14,8 @@
 namespace lidar::demo {
 namespace {
 
-/// The edge of the cube that --fixed-bits divides into steps. It is the diameter of the view of a
-/// sensor with a range of 100 m.
+/// The edge of the cube around the scan. --fixed-bits is the number of bits for each coordinate in
+/// this cube, which a sensor with a range of 100 m fills.
 constexpr double kFixedBitsExtentM = 200;
 
 /// The mean capacities of --drive, for a synthetic source and for a capture. They are between the

@@ -27,7 +27,7 @@ constexpr std::uint16_t kLeastJumpRate = mixing::RateAfter(48);
 // The size of the version, the flags, the lengths and the first byte of the payload.
 constexpr std::size_t kHeaderBytes = 13;
 
-/// Fills `bins` with a slice, and returns the number of its returns.
+/// Fills `bins` with the ranges of a slice. Returns how many LiDAR returns the slice has.
 std::size_t ToBins(const Scan& scan, SliceOf slice, const MixingCase& setting, SliceBins* bins) {
   const SensorModel& model = scan.geometry->model;
   const ColumnWindow window = WindowOf(scan, slice);
