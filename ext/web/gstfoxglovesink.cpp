@@ -297,18 +297,25 @@ static bool Open(GstElement* element) {
   return true;
 }
 
-/// Sets the hub of each input to the hub of the element, which may be null.
-static void GiveHub(GstElement* element) {
-  const auto hub = HubOf(G_OBJECT(element));
+/// Calls `function` with each input and `data`. Inputs may be added or removed meanwhile, so
+/// `function` may be called more than once with an input.
+static void ForEachInput(GstElement* element, GstIteratorForeachFunction function, gpointer data) {
   GstIterator* inputs = gst_bin_iterate_elements(GST_BIN(element));
-  GstIteratorForeachFunction give = [](const GValue* value, gpointer data) {
-    auto* input = GST_LIDAR_FOXGLOVE_INPUT(g_value_get_object(value));
-    lidar::web::SetHub(input, *static_cast<const std::shared_ptr<Hub>*>(data));
-  };
-  auto* data = const_cast<std::shared_ptr<Hub>*>(&hub);
-  while (gst_iterator_foreach(inputs, give, data) == GST_ITERATOR_RESYNC)
+  while (gst_iterator_foreach(inputs, function, data) == GST_ITERATOR_RESYNC)
     gst_iterator_resync(inputs);
   gst_iterator_free(inputs);
+}
+
+/// Sets the hub of each input to the hub of the element, which may be null.
+static void GiveHub(GstElement* element) {
+  auto hub = HubOf(G_OBJECT(element));
+  ForEachInput(
+      element,
+      [](const GValue* value, gpointer data) {
+        lidar::web::SetHub(GST_LIDAR_FOXGLOVE_INPUT(g_value_get_object(value)),
+                           *static_cast<std::shared_ptr<Hub>*>(data));
+      },
+      &hub);
 }
 
 static void Close(GstElement* element) {
@@ -383,14 +390,12 @@ static void PropertyChanged(GObject* object, GParamSpec* spec) {
   if (g_strcmp0(spec->name, "sync") != 0) return;
   gboolean sync = FALSE;
   g_object_get(object, "sync", &sync, nullptr);
-  GstIterator* inputs = gst_bin_iterate_elements(GST_BIN(object));
-  gst_iterator_foreach(
-      inputs,
+  ForEachInput(
+      GST_ELEMENT(object),
       [](const GValue* value, gpointer on) {
         g_object_set(g_value_get_object(value), "sync", *static_cast<gboolean*>(on), nullptr);
       },
       &sync);
-  gst_iterator_free(inputs);
 }
 
 static void gst_lidar_foxglove_sink_init(GstLidarFoxgloveSink* self) { self->state = new State; }
