@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What is taken for a fall of the capacity, and what only looks like one.
+// Tests which measurements WindowAfterDrop() takes for a fall of the link's capacity.
 #include "src/scream/response/capacity_drop.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,8 @@ class CapacityDropTest : public ::testing::Test {
   std::optional<DataSize> Update(double target_mbps) {
     return WindowAfterDrop(path_.now, parameters_, path_.model, window_, Mbps(target_mbps), 20ms);
   }
-  /// Packets of 4 Mbit/s that left twice as fast, so the queue grows.
+  /// Reports packets that the link delivers at 4 Mbit/s, one every 2 ms. Each packet waits longer
+  /// than the one before it by `by`. If `by` is 1 ms, the packets were sent at 8 Mbit/s.
   void HoldBack(int packets, Ecn ecn, Duration by = 1ms) {
     for (int i = 0; i < packets; ++i) path_.Arrive(1, 2ms, queue_ += by, ecn);
   }
@@ -53,24 +54,27 @@ TEST_F(CapacityDropTest, TakesFewMarksForALinkThatIsWellUsedUnlessTheTargetIsFar
 
 TEST_F(CapacityDropTest, TakesMarksOfAShortQueueForWhatTheyAre) {
   Duration queue{0};
-  for (int i = 0; i < 40; ++i) path_.Arrive(1, 1ms, queue += 100us, Ecn::kCe);  // up to 4 ms
+  // The queue delay grows to 4 ms.
+  for (int i = 0; i < 40; ++i) path_.Arrive(1, 1ms, queue += 100us, Ecn::kCe);
   EXPECT_FALSE(Update(20));
 }
 
-/// Beside other flows, packets that arrive as they left show our own rate, not the capacity.
+/// If packets arrive as far apart as they were sent, their rate may be this flow's own rate beside
+/// other flows. It need not be the capacity of the link.
 TEST_F(CapacityDropTest, TakesItsOwnRateForNoDropWhereMarksWork) {
   path_.Arrive(40, 2ms, 20ms, Ecn::kCe);
   EXPECT_FALSE(Update(10));
 }
 
 TEST_F(CapacityDropTest, NeedsAQueueThatGrewByThreePackets) {
-  HoldBack(40, Ecn::kCe, 100us);  // 4 ms: two gaps of 1.9 ms
+  HoldBack(40, Ecn::kCe, 100us);  // The queue grows by 4 ms, or two gaps of 1.9 ms.
   EXPECT_FALSE(Update(10));
-  HoldBack(30, Ecn::kCe, 100us);  // 7 ms: more than three gaps
+  HoldBack(30, Ecn::kCe, 100us);  // The queue grows to 7 ms, or more than three gaps.
   EXPECT_TRUE(Update(10));
 }
 
-/// This response alone keeps a standing queue short if the link does not mark.
+/// A link without marks keeps its queue until something else reduces the window. WindowAfterDrop()
+/// alone does this.
 TEST_F(CapacityDropTest, ShortensAStandingQueueThatNobodyMarks) {
   path_.Arrive(40, 2ms, 50ms, Ecn::kEct1);
   EXPECT_TRUE(Update(10));
@@ -78,7 +82,7 @@ TEST_F(CapacityDropTest, ShortensAStandingQueueThatNobodyMarks) {
 
 TEST_F(CapacityDropTest, NeverWidensTheWindow) {
   HoldBack(40, Ecn::kCe);
-  window_.Set(DataSize::Bytes(20000));  // the link's is 24,000
+  window_.Set(DataSize::Bytes(20000));  // The link's rate would give 24,000 bytes.
   EXPECT_FALSE(Update(10));
 }
 

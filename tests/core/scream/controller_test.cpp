@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The whole controller, by its events and over a simulated path.
+// Tests the whole controller: first by calling its functions, then on a simulated path.
 #include "src/scream/controller.h"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ TEST(Controller, ClosesTheWindowWithoutFeedbackButKeepsAMinimumRate) {
     now = std::max(now, d->time);
     c.OnSent(now, id, {1, seq, DataSize::Bytes(1000), d->ecn});
   }
-  EXPECT_EQ(longest, Duration(160ms));  // 1000 bytes at RATE_PACE_MIN
+  EXPECT_EQ(longest, Duration(160ms));  // the time of 1000 bytes at RATE_PACE_MIN
 }
 
 TEST(Controller, WantsTheTimerWhilePacketsWaitOrAreUnderWay) {
@@ -47,7 +47,7 @@ TEST(Controller, WantsTheTimerWhilePacketsWaitOrAreUnderWay) {
   EXPECT_EQ(c.NextTimer(), kStart + 50ms);
   c.OnSent(kStart, id, {1, 0, DataSize::Bytes(1000), Ecn::kEct1});
   EXPECT_EQ(c.NextTimer(), kStart + 50ms);
-  c.OnRouteChange(kStart + 1ms);  // drops what is under way
+  c.OnRouteChange(kStart + 1ms);  // forgets the packets in flight
   EXPECT_EQ(c.NextTimer(), Time::max());
 }
 
@@ -79,7 +79,7 @@ TEST(Controller, RestartsFromTheStartBitrateOnANewRoute) {
   const DataSize size = DataSize::Bytes(1200);
   Time now = kStart;
   std::uint16_t seq = 0, reported = 0;
-  std::deque<Time> under_way;  // when packets left, from `reported` on
+  std::deque<Time> under_way;  // the sending times of the packets from number `reported` on
   DataSize due;
   // The stream sends at its target in frames of 20 ms, and each packet is reported after 30 ms.
   const auto run = [&](Duration time, Ecn ecn = Ecn::kEct1) {
@@ -110,7 +110,7 @@ TEST(Controller, RestartsFromTheStartBitrateOnANewRoute) {
   c.OnRouteChange(now);
   under_way.clear();
   reported = seq;
-  run(40ms);  // the first report comes later
+  run(40ms);  // No report arrives in this time.
   EXPECT_LT(c.target_bitrate(id), Mbps(2));
   run(200ms);
   EXPECT_EQ(c.statistics(now).loss_events, 0U) << "packets of the old route are not lost";
@@ -168,7 +168,7 @@ TEST(Controller, KnowsTheSourceOfAPacketThatItSawLeaveOnly) {
   Controller c{Parameters()};
   const StreamId a = c.AddStream({});
   c.AddStream({});
-  c.OnSent(kStart, a, {99, 0, DataSize::Bytes(1000), Ecn::kEct1});  // a repair packet, say
+  c.OnSent(kStart, a, {99, 0, DataSize::Bytes(1000), Ecn::kEct1});  // for example a repair packet
   EXPECT_EQ(c.FindStream(99), a);
 }
 
@@ -209,7 +209,8 @@ TEST(Controller, SendsWithoutEcnWhereOnlyThatComesThrough) {
   EXPECT_EQ(c.ecn_state(), EcnState::kSilent);
 }
 
-/// A full link of 8 Mbit/s, RTT 40 ms, that stands still from `now_` on.
+/// A link of 8 Mbit/s with an RTT of 40 ms, which is full. From the time `now_` on, it delivers
+/// nothing.
 class FullLink : public ::testing::Test {
  protected:
   FullLink() {
@@ -219,14 +220,16 @@ class FullLink : public ::testing::Test {
         c_.OnSent(now_, id_, {1, seq_++, DataSize::Bytes(1000), Ecn::kEct1});
     }
   }
-  /// Reports that all packets sent until `sent` have arrived half a round trip later.
+  /// Reports that all packets sent until `sent` have arrived. The last packet arrived half a round
+  /// trip after it was sent.
   void Report(Time sent) {
     const auto until = static_cast<std::uint16_t>(((sent - kStart) / kTick + 1) * kPacketsATick);
     ReportNext(static_cast<std::uint16_t>(until - reported_), Ecn::kEct1, sent + 20ms, 0ms);
   }
-  /// Reports the next `count` packets as arrived 1 ms apart, the last one half a round trip ago.
+  /// Reports the next `count` packets. They arrived 1 ms apart, the last one half a round trip ago.
   void ReportTrain(int count, Ecn ecn) { ReportNext(count, ecn, now_ - 20ms, 1ms); }
-  /// Reports the next `count` packets as arrived `apart` from each other, the last one at `last`.
+  /// Reports the next `count` packets. They arrived `apart` from each other, the last one at
+  /// `last`.
   void ReportNext(int count, Ecn ecn, Time last, Duration apart) {
     rtcp::CongestionFeedback f;
     f.report_timestamp = rtcp::ReportClock::ToTimestamp(last);
@@ -236,7 +239,7 @@ class FullLink : public ::testing::Test {
     reported_ = static_cast<std::uint16_t>(reported_ + count);
     ASSERT_EQ(c_.OnFeedback(now_, f), FeedbackResult::kAccepted);
   }
-  /// Sends five trains over an empty path, and reports each.
+  /// Sends five trains of three packets over an empty path, and reports each train.
   void SendAfresh() {
     reported_ = seq_;
     for (int train = 0; train < 5; ++train, now_ += 50ms) {
@@ -302,7 +305,7 @@ TEST_F(FullLink, AMarkOfAGapIsNotObeyedAfterIt) {
 
 TEST_F(FullLink, AGapOfTheOldRouteGivesNothingBackOnTheNewOne) {
   now_ += 300ms;
-  ReportTrain(1, Ecn::kCe);  // behind a gap
+  ReportTrain(1, Ecn::kCe);  // A gap of the link delayed this packet.
   c_.OnRouteChange(now_);
   SendAfresh();
   EXPECT_EQ(c_.statistics(now_).gaps, 0U);
@@ -310,7 +313,7 @@ TEST_F(FullLink, AGapOfTheOldRouteGivesNothingBackOnTheNewOne) {
 
 TEST_F(FullLink, AGapInWhichTheMachineStoodStillGivesNothingBack) {
   now_ += 300ms;
-  ReportTrain(1, Ecn::kCe);  // behind a gap
+  ReportTrain(1, Ecn::kCe);  // A gap of the link delayed this packet.
   now_ += 1s;
   c_.OnTimer(now_);
   ASSERT_EQ(c_.statistics(now_).bytes_in_flight.bytes(), 0);
@@ -334,7 +337,8 @@ TEST_F(FullLink, APauseOfTheSourceIsNoSilenceOfTheReceiver) {
   EXPECT_EQ(c_.statistics(now_).feedback_timeouts, 0U);
 }
 
-/// The controller waits for a packet no longer than a round trip, however late another packet was.
+/// If one packet was very late, the controller still waits for another packet no longer than a
+/// round trip.
 TEST(Controller, WaitsForAPacketNoLongerThanARoundTrip) {
   Controller c{Parameters()};
   const StreamId id = c.AddStream({});
@@ -344,7 +348,7 @@ TEST(Controller, WaitsForAPacketNoLongerThanARoundTrip) {
     rtcp::CongestionFeedback f;
     f.report_timestamp = rtcp::ReportClock::ToTimestamp(now);
     f.blocks.push_back({1, 0, {}});
-    // All packets that arrived did so at kStart + 10 ms.
+    // All packets that arrived have the same arrival time, kStart + 10 ms.
     for (const char m : metrics)
       f.blocks[0].metrics.push_back({m == 'r', Ecn::kEct1, now - kStart - 10ms});
     ASSERT_EQ(c.OnFeedback(now, f), FeedbackResult::kAccepted);
@@ -412,7 +416,7 @@ TEST(Simulation, ThePureDraftFillsALinkWithoutEcn) {
   EXPECT_LT(m.queue_ms.p95, 40);
 }
 
-/// The counters show which signal moved the rate, and no other signal.
+/// Each counter counts only the signal that it is named after.
 TEST(Simulation, CountsWhatItAnswers) {
   const Statistics marked =
       Simulate(FindScenario("frames_20M_rtt25", Parameters::Draft())->config).flows[0].statistics;

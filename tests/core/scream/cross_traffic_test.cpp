@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The share of others in a busy link, and how bold the window is beside them.
+// Tests how the sender estimates the share of other flows in a link, and how this share changes its
+// window and its pacing.
 #include "src/scream/model/cross_traffic.h"
 
 #include <gtest/gtest.h>
@@ -10,11 +11,12 @@
 namespace lidar::scream::test {
 namespace {
 
-/// Every 20 ms comes a frame of ten packets, about 1 ms apart. Arrivals are in ticks of reports.
+/// Frames of ten packets, one frame every 20 ms. The packets of a frame are sent about 1 ms apart.
+/// Arrival times are rounded to ticks of 1/1024 s, as in a report.
 class CrossTrafficTest : public ::testing::Test {
  protected:
-  /// Sends packets that take `own` ms each on the link. Packets that others sent since our last one
-  /// pass before each of ours.
+  /// Sends packets that take `own` ms each on the link. Before each packet, the link carries the
+  /// packets that other flows sent since the packet before it.
   void Send(int frames, double others_share, Duration queue = 20ms, double own = 0.5) {
     for (int i = 0; i < 10 * frames; ++i) {
       if (i % 10 == 0) traffic_.BeginReport();
@@ -57,7 +59,7 @@ TEST_F(CrossTrafficTest, IsTheOthersShareOfTheLink) {
   }
 }
 
-/// The link carries 1250 bytes in 0.5 ms.
+/// The link carries 1250 bytes in 0.5 ms, which is 20 Mbit/s.
 TEST_F(CrossTrafficTest, TellsWhatTheLinkCarriesForAll) {
   for (const double share : {0.0, 0.4, 0.7}) {
     traffic_ = CrossTraffic();
@@ -68,7 +70,7 @@ TEST_F(CrossTrafficTest, TellsWhatTheLinkCarriesForAll) {
   }
 }
 
-/// Two packets a report, 4 ms apart on average.
+/// Each report has two packets. They are sent 4 ms apart on average.
 TEST_F(CrossTrafficTest, OfASlowFlowFewerPacketsAreEnough) {
   int packets = 0;
   for (; packets < 768 && !traffic_.found(); ++packets) {
@@ -81,7 +83,8 @@ TEST_F(CrossTrafficTest, OfASlowFlowFewerPacketsAreEnough) {
   EXPECT_LT(packets, 300);
 }
 
-/// Packets leave and arrive further apart when the link becomes slower.
+/// If the link becomes slower, the sender sends its packets further apart, and they arrive further
+/// apart.
 TEST_F(CrossTrafficTest, TakesNoStepOfTheCapacityForOthers) {
   for (int i = 0; i < 20; ++i) {
     const bool slow = i % 2 == 1;
@@ -92,7 +95,8 @@ TEST_F(CrossTrafficTest, TakesNoStepOfTheCapacityForOthers) {
   EXPECT_NEAR(*traffic_.share(), 0, 0.1);
 }
 
-/// A packet sent after its predecessor left the queue may find it empty, or nearly so.
+/// If a packet is sent after the packet before it left the queue, it may find the queue empty or
+/// nearly empty.
 TEST_F(CrossTrafficTest, CountsNoPacketThatMayHaveMetAnIdleLink) {
   Send(500, 1, 1500us);
   EXPECT_FALSE(traffic_.share());
@@ -107,14 +111,15 @@ TEST_F(CrossTrafficTest, IsNotBelievedAtOnceAndGoesWithTheOthers) {
   EXPECT_FALSE(traffic_.found());
 }
 
-/// On an idle link, and on a link full of other flows, packets arrive as far apart as they leave.
+/// Packets arrive as far apart as they were sent both on an idle link and on a link full of other
+/// flows. Without a queue, the sender cannot tell these links apart.
 TEST_F(CrossTrafficTest, IsUnknownWithoutAQueue) {
   Send(500, 1, 0ms);
   EXPECT_FALSE(traffic_.share());
   EXPECT_FALSE(traffic_.found());
 }
 
-/// Jitter, a longer route and clocks that drift look like a queue.
+/// Jitter, a longer route and clocks that drift change the measured delay as a queue does.
 TEST_F(CrossTrafficTest, IsUnknownWithoutASignOfCongestion) {
   congested_ = false;
   Send(500, 1);
@@ -152,13 +157,14 @@ TEST_F(CrossTrafficTest, IsUnknownWhilePacketsLeaveEvenly) {
   EXPECT_TRUE(traffic_.unseen());
 }
 
-/// Few packets of a slow flow count, so the flow finds the others' share late.
+/// A packet that was sent after a pause longer than the queue does not count. So few packets of a
+/// slow flow count, and the flow takes long to find other flows.
 TEST_F(CrossTrafficTest, IsUnseenWhileFewPacketsTellOfAShareThatIsKnown) {
   Send(50, 0.5);
   ASSERT_GT(traffic_.share().value_or(0), 0.4);
   ASSERT_FALSE(traffic_.found());
   for (int i = 0; i < 100; ++i) {
-    Add(sent_ += 20ms, arrival_ += 20ms, 7ms);  // after a pause longer than the queue
+    Add(sent_ += 20ms, arrival_ += 20ms, 7ms);  // sent after a pause that is longer than the queue
     Add(sent_ += 1ms, arrival_ += 1ms, 7ms);
   }
   EXPECT_FALSE(traffic_.found());
@@ -173,7 +179,8 @@ TEST_F(CrossTrafficTest, SkipsPacketsOutOfOrder) {
 }
 
 TEST(SharedLink, ABolderWindowIsForEarlyMarksOfAnL4sQueueOnly) {
-  EXPECT_EQ(EarlyMarking(600us), 0);  // marks by coupling with a classic flow's queue
+  // These marks come from the coupling with the queue of a classic flow.
+  EXPECT_EQ(EarlyMarking(600us), 0);
   EXPECT_NEAR(EarlyMarking(800us), 0.5, 1e-9);
   EXPECT_EQ(EarlyMarking(1ms), 1);
   EXPECT_GT(EarlyMarking(1500us), 0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The draft's constants, and the small detectors: queue delay, losses, link rate.
+// Tests the constants of the draft, and the small detectors: queue delay, losses, link rate.
 #include <gtest/gtest.h>
 
 #include "src/link/random.h"
@@ -56,8 +56,8 @@ TEST(Parameters, ThePureDraftHasNoOptionalPartAndNoExtension) {
 
 class QueueDelayTest : public ::testing::Test {
  protected:
-  /// Sends a packet each millisecond. Each takes `owd` to arrive, and the clocks of both ends
-  /// differ by an hour.
+  /// Sends one packet per millisecond. Each packet arrives after `owd`. The clocks of sender and
+  /// receiver differ by an hour.
   void Run(int packets, Duration owd, Duration rtt_excess) {
     for (int i = 0; i < packets; ++i, now_ += 1ms) {
       const Duration way_back = 40ms + rtt_excess - owd - 1h;
@@ -109,7 +109,8 @@ TEST_F(QueueDelayTest, AQueueThatStandsForMinutesIsNoClock) {
   parameters_.clock_drift = false;
   Run(30, 20ms, 0ms);
   Run(1000, 210ms, 190ms);
-  for (int i = 0; i < 100; ++i, now_ += 1s) {  // this becomes the lowest round trip
+  // The delay of 190 ms becomes part of the lowest round trip.
+  for (int i = 0; i < 100; ++i, now_ += 1s) {
     ok_ = delay_.Add(now_, {now_ - 20ms, now_ + 190ms + 1h, 0ms, 20ms - 1h}) && ok_;
     delay_.Update(now_, 40ms);
     ASSERT_EQ(delay_.qdelay(), Duration(190ms));
@@ -192,7 +193,8 @@ TEST(RoundTripTime, SmoothsByAnEighth) {
   EXPECT_EQ(rtt.min(), Duration(80ms));
 }
 
-/// Adds packets of 1000 bytes that left `sent` apart and came out of a queue `spacing` apart.
+/// Adds packets of 1000 bytes that were sent `sent` apart and arrived `spacing` apart, behind a
+/// queue. Returns the time after the last arrival.
 Time Arrive(BusyRun* run, Time now, Duration spacing, int packets, Duration sent = 500us) {
   for (int i = 0; i < packets; ++i, now += spacing)
     run->Add({kStart + i * sent, now, DataSize::Bytes(1000), 5ms, true, true});
@@ -202,7 +204,7 @@ Time Arrive(BusyRun* run, Time now, Duration spacing, int packets, Duration sent
 TEST(BusyRun, MeasuresTheLinkByTheSpacingOfWhatItHeldBack) {
   BusyRun run;
   Arrive(&run, kStart, 1ms, 8);
-  EXPECT_FALSE(run.capacity());  // 7 ms, of which the first does not count
+  EXPECT_FALSE(run.capacity());  // seven gaps of 1 ms, of which the first does not count
   Arrive(&run, kStart + 8ms, 1ms, 1);
   ASSERT_TRUE(run.capacity());
   EXPECT_NEAR(run.capacity()->bits_per_second(), 8e6, 1);
@@ -252,10 +254,11 @@ TEST(BusyRun, GrowsWithoutBoundByPacketsThatLeftAtOnce) {
   EXPECT_GT(run.growth(), 1e6);
 }
 
-/// A frame of ten packets every 20 ms, behind a queue that grows with each.
+/// Frames of ten packets, one frame every 20 ms. In each frame, the delay grows from packet to
+/// packet.
 class LossContextTest : public ::testing::Test {
  protected:
-  /// Each frame loses one packet.
+  /// Sends `frames` frames. In frame number f, the packet with the index lost(f) is lost.
   template <class Index>
   void Lose(int frames, Index lost) {
     for (int f = 0; f < frames; ++f, now_ += 20ms) {
@@ -280,7 +283,9 @@ TEST_F(LossContextTest, KnowsRandomLossFromIt) {
   }
 }
 
-/// Of two scattered delays, the longer one exceeds most single delays, so pairs are ranked.
+/// LossContext compares the longer delay of the two packets around a loss with the longer delay of
+/// each other pair. In a comparison with single delays it would mostly be longer, even if losses
+/// are random.
 TEST_F(LossContextTest, KnowsRandomLossWhereDelaysScatter) {
   link::Random random(1);
   for (int i = 0; i < 5000; ++i, now_ += 1ms) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What marks show: alpha, and whether the path carries ECN.
+// Tests what the sender learns from ECN marks: alpha, and whether the path carries ECN.
 #include <gtest/gtest.h>
 
 #include "src/scream/model/classic_ecn.h"
@@ -35,7 +35,7 @@ TEST(L4sAlpha, TheEvenOneAveragesARoundWithoutBiasAndStillAttacksWhenMostIsMarke
   for (int i = 0; i < 1000; ++i) alpha.Update(kStart + i * 10ms, 10, i % 8 == 0, 20ms, 40ms);
   EXPECT_NEAR(alpha.value(), 0.1 / 8, 0.005);
   const double before = alpha.value();
-  alpha.Update(kStart + 11s, 0, 0, 20ms, 40ms);  // ends the round of the last packets
+  alpha.Update(kStart + 11s, 0, 0, 20ms, 40ms);  // ends the round that the last packets belong to
   alpha.Update(kStart + 12s, 10, 10, 20ms, 40ms);
   EXPECT_NEAR(alpha.value(), before + (1 - before) / 32, 0.01) << "one round may be a step's";
   const double once = alpha.value();
@@ -43,7 +43,7 @@ TEST(L4sAlpha, TheEvenOneAveragesARoundWithoutBiasAndStillAttacksWhenMostIsMarke
   EXPECT_NEAR(alpha.value(), once + (1 - once) / 8, 1e-9);
 }
 
-/// A step marks all packets of some rounds and none of the others.
+/// An AQM with a step marks all packets of some rounds and no packet of the other rounds.
 TEST(L4sAlpha, TheEvenOneTakesRoundsThatAreMarkedByTurnsForTheirShare) {
   const Parameters p;
   L4sAlpha alpha(p);
@@ -101,8 +101,8 @@ TEST(EcnMonitor, TakesAPathThatBleachesSomePacketsForCapable) {
   EXPECT_EQ(ecn.state(), EcnState::kCapable);
 }
 
-/// Sends a packet each 10 ms from `from` to `until`. The packets that `arrives` lets through are
-/// acknowledged with the codepoint that they were sent with.
+/// Sends a packet every 10 ms from `from` to `until`. If `arrives` returns true for the codepoint
+/// of a packet, the packet is acknowledged with that codepoint.
 template <class Arrives>
 void Send(EcnMonitor* ecn, Duration from, Duration until, Arrives arrives) {
   for (Duration t = from; t < until; t += 10ms) {
@@ -120,7 +120,8 @@ TEST(EcnMonitor, FallsBackWhereOnlyPacketsWithoutACodepointComeThrough) {
   EcnMonitor ecn(Ecn::kEct1);
   Send(&ecn, 0s, 2s, kPlain);
   EXPECT_EQ(ecn.state(), EcnState::kTesting);
-  // From then on every other packet has no codepoint. Ten of these packets show the fault.
+  // From 2 s on, the sender sends every other packet without a codepoint. When ten of these packets
+  // have arrived, ECN is known to be the fault.
   Send(&ecn, 2s, 2s + 180ms, kPlain);
   EXPECT_EQ(ecn.state(), EcnState::kTesting);
   Send(&ecn, 2s + 180ms, 2s + 220ms, kPlain);

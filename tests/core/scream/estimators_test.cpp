@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What the estimators forget, and what they ignore.
+// Tests what the estimators forget, and which packets they ignore.
 #include <gtest/gtest.h>
 
 #include "src/scream/model/ecn_monitor.h"
@@ -56,7 +56,7 @@ TEST(PathModel, KnowsNothingOfAnotherRoute) {
 TEST(PathModel, KnowsNoQueueAndNoOtherFlowOfAnotherRoute) {
   const Parameters p;
   Path path(p);
-  for (int i = 0; i < 20; ++i) {  // losses at the longest queue
+  for (int i = 0; i < 20; ++i) {  // loses the packets that find the longest queue
     path.Arrive(20, 1ms, 0ms, Ecn::kEct1);
     path.Arrive(1, 1ms, 20ms, Ecn::kEct1);
     AckSummary loss;
@@ -64,7 +64,7 @@ TEST(PathModel, KnowsNoQueueAndNoOtherFlowOfAnotherRoute) {
     loss.lost.back().sent = path.now - kRtt - 20ms;
     path.model.OnReport(path.now, loss, kSender);
   }
-  path.Arrive(120, 100ms, 50ms, Ecn::kEct1);  // the delay never falls, as if clocks drifted
+  path.Arrive(120, 100ms, 50ms, Ecn::kEct1);  // The delay never falls, as if the clocks drifted.
   for (int report = 0; report < 10; ++report) {
     AckSummary marks;
     for (int packet = 0; packet < 10; ++packet) {
@@ -176,7 +176,8 @@ TEST(PathModel, TakesNothingFromPacketsOfTheOldRoute) {
   AckSummary late;
   late.late_ce.push_back(path.now - 20ms);
   path.model.OnReport(path.now, late, kSender);
-  path.Arrive(20, 1ms, 5ms, Ecn::kCe);  // the last of them was sent 25 ms before the new route
+  // The last of these packets was sent 25 ms before the new route.
+  path.Arrive(20, 1ms, 5ms, Ecn::kCe);
   EXPECT_FALSE(path.model.MarkedLately(path.now));
   EXPECT_FALSE(path.model.L4sWorks(path.now));
   EXPECT_EQ(path.model.ecn().state(), EcnState::kTesting);
@@ -191,7 +192,7 @@ TEST(PathModel, TheRateIsHalvedWhereClocksDriftAndWholeOnAnotherRoute) {
   Path path(p);
   for (int i = 0; i < 5000 && path.model.half_rate_until() == Time{}; ++i)
     path.Arrive(1, 10ms, 40ms, Ecn::kEct1);
-  // The half rate lasts five round trips, which are longer than its minimum of 0.2 s.
+  // The half rate lasts for five round trips. This is longer than its minimum, 0.2 s.
   EXPECT_GT(path.model.half_rate_until(), path.now + 350ms);
   EXPECT_LT(path.model.half_rate_until(), path.now + 450ms);
   path.model.Reset(path.now);
@@ -274,7 +275,7 @@ TEST(EcnMonitor, BeginsToCountAnewOnAnotherRoute) {
 
 TEST(LossContext, KnowsNothingOfTheFirstPackets) {
   LossContext context;
-  const auto lose = [&context](int frame) {  // the last one of ten
+  const auto lose = [&context](int frame) {  // loses the last packet of ten
     const Time start = kStart + frame * 20ms;
     for (int i = 0; i < 9; ++i) context.OnAcked(start + i * 1ms, i * 300us);
     context.OnLost(start + 9ms);
@@ -290,7 +291,7 @@ TEST(QueueDelay, AWayBackThatTakesLongForAWhileIsNoClock) {
   QueueDelay delay(p);
   for (const Time now : {kStart, kStart + 1s})
     EXPECT_TRUE(delay.Add(now, {now - 40ms, now - 20ms, 0ms, 20ms}));
-  const Time later = kStart + 6min;  // the shortest way back is by then forgotten
+  const Time later = kStart + 6min;  // By then the shortest way back is forgotten.
   EXPECT_TRUE(delay.Add(later, {later - 240ms, later - 220ms, 200ms, 220ms}));
   EXPECT_TRUE(delay.Add(later, {later - 40ms, later - 20ms, 0ms, 20ms}));
 }

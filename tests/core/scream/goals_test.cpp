@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Goals of the extensions: the scenarios of the matrix, and what each must reach.
+// Tests that each scenario of the matrix reaches the goals of the extensions.
 #include <gtest/gtest.h>
 
 #include "src/sim/figures.h"
@@ -17,8 +17,9 @@ TEST_P(ScenarioGoals, AreReached) {
 }
 INSTANTIATE_TEST_SUITE_P(Matrix, ScenarioGoals, ::testing::ValuesIn(ScenariosWithGoals()));
 
-/// Three falls of the capacity delay two whole scans each, and p99 of 560 scans is the seventh
-/// slowest. (If a scan begins 40 to 60 ms after a fall, before the fall is known, three are late.)
+/// The capacity falls three times, and each fall delays two scans. These are six of 560 scans, and
+/// p99 is the seventh longest delay. The phases from 40 to 60 ms are left out, because a scan that
+/// begins 40 to 60 ms after a fall is late as well. The sender does not know of the fall by then.
 TEST(Goals, AScanBehindThoseOfACapacityDropIsInTime) {
   for (const Duration phase : {0ms, 10ms, 20ms, 30ms, 70ms, 80ms, 90ms}) {
     Scenario s = *FindScenario("frames10_steps_rtt40", Parameters());
@@ -38,7 +39,7 @@ TEST(Goals, LateWakeUpsAndVaryingFramesCostLittle) {
   EXPECT_LE(m.queue_ms.p99, 8);
 }
 
-/// A radio loses packets, and the threads of the machine wake up late.
+/// As on a radio link, packets are lost at random. The threads of the sender wake up late.
 TEST(Goals, RandomLossCostsLittleWhereDelaysScatter) {
   for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
     Scenario s = *FindScenario("frames_20M_loss2.0", Parameters());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A path as reports show it, without a link or a sender.
+// A path model that receives reports directly, without a simulated link and sender.
 #pragma once
 #include "src/scream/model/path_model.h"
 #include "src/sim/simulated_time.h"
@@ -9,7 +9,7 @@ namespace lidar::scream {
 constexpr Duration kRtt = 40ms;
 constexpr DataSize kPacket = DataSize::Bytes(1000);
 
-/// Arrive() reports packets that arrive `spacing` apart, after a queue of `queue`.
+/// Arrive() reports packets that arrive `spacing` apart and waited in a queue for `queue`.
 class Path {
  public:
   explicit Path(const Parameters& parameters) : model(parameters) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// How fast packets leave.
+// Tests how the pacer spaces packets.
 #include <gtest/gtest.h>
 
 #include "src/scream/pacer.h"
@@ -82,7 +82,8 @@ TEST(Pacer, ASmallFrameLeavesRoomForALargerOne) {
   EXPECT_EQ(pacer.next(), kStart + 20ms + 640us);
 }
 
-/// Gaps come in pairs of a longer and a shorter one, in an order without a period.
+/// The gaps between packets come in pairs: one is longer by the ripple, and one is shorter by the
+/// ripple. Which of the two is first must not repeat with a period.
 TEST(Pacer, GapsAreUnevenByTheRippleAndEvenOnAverage) {
   const Parameters p;
   for (const Duration ripple : {Duration(200us), Duration(10ms)}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The reference window against the draft's pseudo code.
+// Tests that the reference window follows the pseudo code of the draft.
 #include "src/scream/response/reference_window.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,8 @@ class ReferenceWindowTest : public ::testing::Test {
     signals_.max_bytes_in_flight_prev = DataSize::Bytes(1000000);
     window_.Set(DataSize::Bytes(100000));
   }
-  /// No bytes are acknowledged, so only reductions move the window.
+  /// Updates the window after the time `after`, and returns the factor by which the window changed.
+  /// Unless a test sets `bytes_newly_acked`, the window never grows.
   double Factor(Duration after = 1s) {
     const auto before = static_cast<double>(window_.ref_wnd().bytes());
     now_ += after;
@@ -58,7 +59,7 @@ TEST_F(ReferenceWindowTest, GivesATargetOverTheRoundTripWithTheDraftsReserves) {
 TEST_F(ReferenceWindowTest, AStartForgetsTheSignsOfTheRouteBefore) {
   signals_.loss_detected = signals_.data_units_marked = true;
   Factor();
-  Factor(1ms);  // too soon for another reaction
+  Factor(1ms);  // too soon for another reduction
   signals_.loss_detected = signals_.data_units_marked = false;
   window_.Start(Mbps(5), 25ms);
   EXPECT_EQ(Factor(), 1);
@@ -86,7 +87,7 @@ TEST_F(ReferenceWindowTest, L4sScalesByHalfOfAlpha) {
 TEST_F(ReferenceWindowTest, L4sIsGentlerCloseToTheInflectionPointUnlessTheQueueIsLong) {
   signals_.data_units_marked = true;
   signals_.l4s_alpha = 0.1;
-  Factor();  // sets the inflection point, 5 % above where the window is now
+  Factor();  // The window is now 5 % below the inflection point.
   EXPECT_NEAR(Factor(), 1 - 0.05 * 0.25, 1e-4);
   signals_.qdelay = 16ms;
   EXPECT_NEAR(Factor(), 1 - 0.05, 1e-4);
@@ -126,8 +127,8 @@ TEST_F(ReferenceWindowTest, TheInflectionPointWaitsForGrowthByFivePercent) {
     return window_.ref_wnd_i().bytes();
   };
   signals_.loss_detected = true;
-  EXPECT_EQ(reduce_at(100000, 25ms), 100000);  // to 70000
-  EXPECT_EQ(reduce_at(73500, 25ms), 100000);   // to 51450
+  EXPECT_EQ(reduce_at(100000, 25ms), 100000);  // The window falls to 70000.
+  EXPECT_EQ(reduce_at(73500, 25ms), 100000);   // The window falls to 51450.
   EXPECT_EQ(reduce_at(54023, 25ms), 54023);
 }
 
@@ -169,7 +170,7 @@ TEST_F(ReferenceWindowTest, GrowsByOneMssARoundTripRightAfterCongestion) {
 TEST_F(ReferenceWindowTest, GrowsByTwoPercentMoreLongAfterCongestion) {
   signals_.max_bytes_in_flight = DataSize::Bytes(100000);
   signals_.bytes_newly_acked = DataSize::Bytes(100000);
-  EXPECT_NEAR(Factor(), 1.03, 1e-4);  // MSS / window and MUL_INCREASE_FACTOR
+  EXPECT_NEAR(Factor(), 1.03, 1e-4);  // MSS / window, and MUL_INCREASE_FACTOR
 }
 
 TEST_F(ReferenceWindowTest, DoesNotGrowFarAboveWhatIsInFlightNorAtTheMaximumBitrate) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The responses beyond the draft, each by itself: outage, send window, pacing.
+// Tests each response that is not in the draft by itself: outage, send window, pacing.
 #include <gtest/gtest.h>
 
 #include <utility>
@@ -57,11 +57,11 @@ TEST_F(OutageTest, AReceiverThatReportsSeldomIsWaitedForTwiceAsLong) {
 
 class GapRecoveryTest : public ::testing::Test {
  protected:
-  static constexpr DataSize kWindow = DataSize::Bytes(50000);  // 8 Mbit/s
+  static constexpr DataSize kWindow = DataSize::Bytes(50000);  // the window for 8 Mbit/s
   std::optional<GapRecovery::Restart> Update(DataSize window) {
     return gaps_.Update(path_.now, path_.model, window);
   }
-  /// Delivers packets at 8 Mbit/s, then next to nothing for a second.
+  /// Delivers packets at 8 Mbit/s, and then only one packet every 100 ms for a second.
   void FallIntoAGap() {
     path_.Arrive(20, 1ms, 1ms, Ecn::kEct1);
     EXPECT_FALSE(Update(kWindow));
@@ -81,7 +81,7 @@ TEST_F(GapRecoveryTest, GivesBackTheWindowWhenTheBacklogLeavesAtTheOldRate) {
   path_.Arrive(8, 1ms, 900ms, Ecn::kCe);
   const auto restart = Update(DataSize::Bytes(3000));
   ASSERT_TRUE(restart);
-  EXPECT_NEAR(restart->window / kWindow, 0.96, 0.02);  // 1.2 round trips of 8 Mbit/s
+  EXPECT_NEAR(restart->window / kWindow, 0.96, 0.02);  // what 8 Mbit/s carry in 1.2 round trips
   EXPECT_LT(Milliseconds(restart->s_rtt), 45);
   EXPECT_FALSE(gaps_.in_gap());
 }
@@ -109,7 +109,7 @@ TEST_F(GapRecoveryTest, ComesBackByHalvesWhereThereIsNoBacklogToMeasureBy) {
 
 TEST_F(GapRecoveryTest, ComesBackWithTheFirstPacketThatIsNotMarked) {
   FallIntoAGap();
-  path_.Arrive(1, 50ms, 0ms, Ecn::kCe);  // it met the gap
+  path_.Arrive(1, 50ms, 0ms, Ecn::kCe);  // This packet was in the gap.
   EXPECT_FALSE(Update(DataSize::Bytes(3000)));
   path_.Arrive(1, 5ms, 4ms, Ecn::kEct1);
   EXPECT_TRUE(Update(DataSize::Bytes(3000)));
@@ -118,7 +118,7 @@ TEST_F(GapRecoveryTest, ComesBackWithTheFirstPacketThatIsNotMarked) {
 TEST_F(GapRecoveryTest, BelievesLessOnceAStepBackMeetsASlowLink) {
   FallIntoAGap();
   path_.Arrive(2, 50ms, 0ms, Ecn::kEct1);
-  ASSERT_TRUE(Update(DataSize::Bytes(3000)));  // 26500
+  ASSERT_TRUE(Update(DataSize::Bytes(3000)));  // The window becomes 26500.
   const DataRate before = gaps_.rate_before().value();
   path_.Arrive(8, 10ms, 100ms, Ecn::kCe);
   EXPECT_FALSE(Update(DataSize::Bytes(3000)));
@@ -132,11 +132,12 @@ TEST_F(GapRecoveryTest, BelievesLessOnceAStepBackMeetsASlowLink) {
 TEST_F(GapRecoveryTest, BelievesAsMuchAsBeforeOnceTheLinkWasMeasured) {
   FallIntoAGap();
   path_.Arrive(2, 50ms, 0ms, Ecn::kEct1);
-  ASSERT_TRUE(Update(DataSize::Bytes(3000)));  // 26500, which nothing has measured
+  // The window becomes 26500, although the link was not measured.
+  ASSERT_TRUE(Update(DataSize::Bytes(3000)));
   path_.Arrive(8, 1ms, 900ms, Ecn::kCe);
   ASSERT_TRUE(Update(DataSize::Bytes(3000)));
   path_.Arrive(2, 50ms, 0ms, Ecn::kEct1);
-  path_.Arrive(8, 20ms, 100ms, Ecn::kCe);  // the next gap
+  path_.Arrive(8, 20ms, 100ms, Ecn::kCe);  // begins the next gap
   EXPECT_FALSE(Update(DataSize::Bytes(3000)));
   path_.Arrive(2, 100ms, 0ms, Ecn::kEct1);
   const auto restart = Update(DataSize::Bytes(3000));
@@ -147,14 +148,15 @@ TEST_F(GapRecoveryTest, BelievesAsMuchAsBeforeOnceTheLinkWasMeasured) {
 TEST_F(GapRecoveryTest, BelievesAsMuchAsBeforeOnceTheWindowWasBack) {
   FallIntoAGap();
   DataSize window = DataSize::Bytes(3000);
-  for (int i = 0; i < 20 && gaps_.in_gap(); ++i) {  // step by step, without a queue
+  // The window grows in steps, because there is no queue.
+  for (int i = 0; i < 20 && gaps_.in_gap(); ++i) {
     path_.Arrive(1, 50ms, 0ms, Ecn::kEct1);
     if (const auto restart = Update(window)) window = restart->window;
   }
   path_.Arrive(20, 1ms, 0ms, Ecn::kEct1);
   EXPECT_FALSE(Update(kWindow));
   const DataRate before = gaps_.rate_before().value();
-  path_.Arrive(8, 20ms, 100ms, Ecn::kCe);  // the next gap
+  path_.Arrive(8, 20ms, 100ms, Ecn::kCe);  // begins the next gap
   EXPECT_FALSE(Update(DataSize::Bytes(3000)));
   EXPECT_TRUE(gaps_.in_gap());
   EXPECT_EQ(gaps_.rate_before()->bits_per_second(), before.bits_per_second());
@@ -179,8 +181,8 @@ TEST_F(GapRecoveryTest, TakesWhatLastsForMoreThanTenSecondsForWhatTheLinkIs) {
   EXPECT_FALSE(gaps_.in_gap());
 }
 
-/// Growth depends on the frame period, the rounds without congestion, the queue, and whether marks
-/// work.
+/// The growth depends on the frame period, on the number of rounds without congestion, on the
+/// queue, and on whether the link marks.
 TEST(FastIncrease, GrowsByTheRoundsAndLessBehindAQueue) {
   const Parameters p;
   Path unmarked(p);
@@ -203,7 +205,7 @@ TEST(FastIncrease, GrowsByTheRoundsAndLessBehindAQueue) {
   EXPECT_EQ(growth(unmarked, 1ms), 0);
   for (int round = 1; round <= p.fast_increase_rounds + 3; ++round) {
     increase.Update(kStart + round * kRtt, kRtt);
-    increase.Update(kStart + round * kRtt + 1ms, kRtt);  // still this round
+    increase.Update(kStart + round * kRtt + 1ms, kRtt);  // This is still the same round.
     const int bold = std::max(0, round - p.fast_increase_rounds);
     EXPECT_DOUBLE_EQ(growth(unmarked, 1ms) * max,
                      std::min(max, bold * p.fast_increase_step_unmarked));
@@ -271,7 +273,7 @@ TEST(PacingReserve, IsWhatGoesUnmarkedWithinLimits) {
 
 class LossIsCongestionTest : public ::testing::Test {
  protected:
-  /// Loses packets until the draft's averaged rate is `rate`.
+  /// Reports lost packets until the averaged loss rate of the draft is at least `rate`.
   void LoseUpTo(double rate) {
     while (path_.model.loss_rate() < rate) {
       AckSummary acks;

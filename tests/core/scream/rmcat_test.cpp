@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The figures of a test case of RFC 8867 and 8869, from a log that is written by hand.
+// Tests the figures of a test case of RFC 8867 and RFC 8869. The tests write the log by hand.
 #include "src/sim/rmcat.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,8 @@
 namespace lidar::scream::test {
 namespace {
 
-/// A link of 8 Mbit/s, measured for two seconds. A packet of 100 kB a second is 0.8 Mbit/s.
+/// A link of 8 Mbit/s that is measured for two seconds. Each packet has 100 kB, so one packet per
+/// second is 0.8 Mbit/s.
 class RmcatFigures : public ::testing::Test {
  protected:
   static constexpr std::int64_t kBytes = 100'000;
@@ -49,7 +50,7 @@ TEST_F(RmcatFigures, CountPacketsOfTheMeasuredTimeOnly) {
   EXPECT_DOUBLE_EQ(m.loss, 0.2);
   EXPECT_DOUBLE_EQ(m.media_mbps, 4 * 0.4);
   EXPECT_DOUBLE_EQ(m.queue_ms.max, 9);
-  // The flow can use no more than its 2 Mbit/s.
+  // The flow sends at most 2 Mbit/s, so it cannot use more of the link.
   EXPECT_DOUBLE_EQ(m.utilisation, 4 * 0.4 / 2);
 }
 
@@ -106,7 +107,8 @@ TEST_F(RmcatFigures, CountFramesAndReports) {
   FlowResult& flow = result_.flows[0];
   for (const Duration at : {500ms, 1000ms, 2000ms, 3000ms})
     flow.frames.push_back({kStart + at, 0, 1000, 2, 2, kStart + at + (at == 2s ? 40ms : 20ms)});
-  flow.frames.push_back({kStart + 2s, 0, 1000, 2, 1, kStart + 9s});  // lacks a packet
+  // One packet of this frame is missing.
+  flow.frames.push_back({kStart + 2s, 0, 1000, 2, 1, kStart + 9s});
   flow.frames_dropped = 1;
   flow.feedback_bytes = 30;
   flow.delivered_bytes = 1000;

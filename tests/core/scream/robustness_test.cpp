@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Faults on the path of a running flow, and how soon the flow recovers.
+// Tests how soon a running flow recovers from faults of its path.
 #include <gtest/gtest.h>
 
 #include "src/sim/scenarios.h"
@@ -8,7 +8,8 @@
 namespace lidar::scream::test {
 namespace {
 
-/// A run, and figures of parts of it by seconds since its start.
+/// A simulated run. The functions return figures of a part of the run, given by times since its
+/// start.
 class Trial {
  public:
   explicit Trial(const Scenario& s)
@@ -24,7 +25,7 @@ class Trial {
   double MaxQueueMs(Duration from, Duration until) const {
     return result_.QueueDelay(origin_ + from, origin_ + until).max;
   }
-  /// Returns the lost share of the packets that were sent between `from` and `until`.
+  /// Returns which share of the packets that were sent between `from` and `until` was lost.
   double OwnLoss(Duration from, Duration until) const {
     double sent = 0, lost = 0;
     for (const PacketLog& p : result_.packets) {
@@ -34,7 +35,7 @@ class Trial {
     }
     return lost / sent;
   }
-  /// The statistics as they were at `t`.
+  /// Returns the statistics at the time `t`.
   Statistics At(Duration t) const {
     for (const Sample& s : result_.samples)
       if (s.time >= origin_ + t) return s.statistics;
@@ -49,7 +50,8 @@ class Trial {
 
 Scenario Named(const char* name) { return *FindScenario(name, Parameters()); }
 
-/// The path is dead from 10 s to 40 s. It keeps 100 kB and drops what comes after.
+/// Returns the scenario with an outage from 10 s to 40 s. In this time the path queues 100 kB and
+/// drops all further packets.
 Scenario WithOutage(Scenario s) {
   s.config.forward.capacity.AddOutage(10s, 40s);
   s.config.forward.limit.bytes = DataSize::Bytes(100000);
@@ -73,7 +75,7 @@ TEST(Outage, IsForgottenASecondAfterThePathReturns) {
   for (const char* name : {"frames_20M_rtt25", "frames_8M_rtt40", "frames10_8M_rtt40",
                            "slices_8M_rtt40", "frames_8M_fifo100_notect"}) {
     const Trial run(WithOutage(Named(name)));
-    // Rounds are long at 10 frames/s, so the rate rises more slowly.
+    // At 10 frames/s the rounds are long, so the rate rises more slowly.
     EXPECT_GT(run.Utilisation(41s, 43s), std::string(name) == "frames10_8M_rtt40" ? 0.6 : 0.7)
         << name;
     EXPECT_LT(run.MaxQueueMs(42s, 43s), 60) << name;
@@ -89,7 +91,8 @@ TEST(Outage, OfTheWayBackAloneIsForgottenAsSoon) {
   EXPECT_GT(run.Utilisation(21s, 23s), 0.7);
 }
 
-/// As in a handover: nothing is lost, and afterwards the link carries what it did before.
+/// The link stops as in a handover: it loses no packets, and afterwards its capacity is the same as
+/// before.
 TEST(Freeze, OfTheLinkIsNoDropOfItsCapacity) {
   for (const char* name :
        {"frames_20M_rtt25", "frames_8M_rtt40", "frames10_8M_rtt40", "slices_8M_rtt40"}) {
@@ -154,7 +157,7 @@ TEST(Restart, OfTheReceiverIsForgottenWithinTwoSeconds) {
   EXPECT_EQ(run.End().feedback_ignored, 0U);
 }
 
-/// A payloader that was restarted with the SSRC it had.
+/// A payloader restarts and continues with its SSRC, but with other sequence numbers.
 TEST(Restart, OfSequenceNumbersAloneChangesNothing) {
   for (const std::uint16_t back : {std::uint16_t{30500}, std::uint16_t{1000}}) {
     Scenario s = Named("frames_8M_rtt40");
@@ -179,7 +182,7 @@ TEST(LossBurst, DoesNotPinTheRateOnALinkThatBecomesFaster) {
   EXPECT_GT(run.Mbps(25s, 30s), 70);
 }
 
-/// A queue of 1 ms drops what is above the link's rate, as a policer does.
+/// With a queue limit of 1 ms, the link drops nearly all packets above its rate, as a policer does.
 TEST(Policer, IsUsedWithoutMuchLoss) {
   Scenario s = Named("frames_20M_rtt25");
   s.config.forward.capacity = link::Capacity::Constant(Mbps(10));
@@ -201,7 +204,7 @@ TEST(Feedback, WithoutArrivalTimesStillTellsOfMarksAndRoundTrips) {
   }
 }
 
-/// The route is longer from 15 s on.
+/// Returns the scenario with a route that becomes longer at 15 s.
 Scenario OnALongerRoute(Scenario s) {
   s.config.flows[0].route_change = 15s;
   s.config.longer_by = 30ms;
@@ -216,7 +219,7 @@ TEST(RouteChange, KeepsTheFlowGoingAndTestsEcnAnew) {
   EXPECT_EQ(run.End().ecn_state, EcnState::kCapable);
 }
 
-/// Marks by the bottleneck of the old route show nothing about the new route.
+/// The marks of the old route's bottleneck show nothing about the bottleneck of the new route.
 TEST(RouteChange, LearnsMarksAnew) {
   const Trial run(OnALongerRoute(Named("slices_8M_step1ms")));
   EXPECT_GT(run.Utilisation(16500ms, 21s), 0.85);
@@ -231,7 +234,7 @@ TEST(Feedback, ThatIsSlowCostsLittle) {
   EXPECT_LT(run.MaxQueueMs(10s, 40s), 30);
 }
 
-/// Receivers with the code of the reference implementation report once a frame.
+/// Receivers that use the code of the reference implementation send one report per frame.
 TEST(Feedback, OnceAFrameIsEnough) {
   for (const char* name :
        {"frames_20M_rtt25", "frames_8M_rtt40", "frames10_8M_rtt40", "frames_20M_two_flows"}) {
@@ -264,7 +267,8 @@ TEST(Feedback, ThatIsLostInPartCostsLittleAndAddsNoQueue) {
   }
 }
 
-/// A local network: the window of one round trip is less than what arrives between two reports.
+/// As in a local network, the round trip is short. A window that holds one round trip is less than
+/// the data that arrives between two reports.
 TEST(ShortPath, IsUsedFromTheStartByAStreamThatNeedsLittle) {
   for (const char* name : {"frames_8M_rtt40", "frames_8M_fifo100_notect"}) {
     for (const Duration rtt : {Duration(200us), Duration(1ms), Duration(3ms)}) {
@@ -281,7 +285,7 @@ TEST(ShortPath, IsUsedFromTheStartByAStreamThatNeedsLittle) {
   }
 }
 
-/// MIN_REF_WND over the round trip is more than this link carries.
+/// MIN_REF_WND per round trip is a higher rate than the rate of this link.
 TEST(MinimumWindow, IsHeldOnALinkThatIsSlowerThanIt) {
   Scenario s = Named("frames_8M_rtt40");
   s.config.forward.capacity = link::Capacity::Constant(Mbps(0.5));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Runs of the whole control loop must match the golden files.
+// Tests that runs of the whole control loop match the golden files.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -28,7 +28,8 @@ SimulationConfig Named(const char* name, const Parameters& parameters = {}) {
   return config;
 }
 
-/// Slices of a scan share a group; eight of them take a tenth of a second.
+/// Returns a source of slices. Eight slices are one scan, which takes a tenth of a second. The
+/// slices of a scan belong to the same group.
 SourceConfig Slices(const StreamConfig& stream) {
   SourceConfig source;
   source.stream = stream;
@@ -217,7 +218,7 @@ SimulationConfig ShortPath() {
   return config;
 }
 
-/// Returns the figures of a run each second, and all counters at its end.
+/// Returns the figures of a run for each second, and all counters at its end.
 std::string Course(const SimulationResult& result) {
   std::ostringstream out;
   Time next = result.config.forward.origin + 1s;
@@ -251,7 +252,8 @@ std::string Course(const SimulationResult& result) {
   return out.str();
 }
 
-/// Machines may round the last digit of a figure differently.
+/// Returns true if two figures are equal or differ by 0.1 % at most. Machines may round the last
+/// digit of a figure differently.
 bool Same(const std::string& a, const std::string& b) {
   if (a == b) return true;
   char* end_a = nullptr;
@@ -260,8 +262,8 @@ bool Same(const std::string& a, const std::string& b) {
   return *end_a == '\0' && *end_b == '\0' && std::abs(x - y) <= 1e-3 * std::abs(y);
 }
 
-/// The files show what a change of the controller does to whole runs. If the change is intended,
-/// UPDATE_GOLDEN=1 in the environment writes the files anew.
+/// The golden files show how a change of the controller changes whole runs. If the change is
+/// intended, run the test with UPDATE_GOLDEN=1 in the environment. The test then writes the files.
 class Runs : public ::testing::TestWithParam<Run> {};
 
 TEST_P(Runs, TakeTheCourseThatTheyAlwaysTook) {

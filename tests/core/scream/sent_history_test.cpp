@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// How far the sender trusts its feedback.
+// Tests which reports the sender accepts, and what it learns from them.
 #include "src/scream/model/sent_history.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ constexpr Duration kRoundTrip = 40ms;
 
 class SentHistoryTest : public ::testing::Test {
  protected:
-  /// Packets [from, until), one a millisecond.
+  /// Sends the packets from `from` to `until` - 1, one per millisecond.
   void Send(int from, int until) {
     for (int seq = from; seq < until; ++seq, now_ += 1ms)
       history_.OnSent(1, static_cast<std::uint16_t>(seq),
@@ -62,7 +62,7 @@ TEST_F(SentHistoryTest, KnowsWhatHasBeenInFlightForLongest) {
   EXPECT_EQ(history_.oldest_in_flight(), kStart + 4ms);
 }
 
-/// The packets of stream 2 are older, but the report has them second.
+/// The packets of stream 2 are older than those of stream 1, but come after them in the report.
 TEST_F(SentHistoryTest, TheRoundTripIsOfThePacketSentLast) {
   for (const std::uint32_t ssrc : {2U, 1U}) {
     for (std::uint16_t seq = 0; seq < 2; ++seq, now_ += 5ms)
@@ -74,7 +74,8 @@ TEST_F(SentHistoryTest, TheRoundTripIsOfThePacketSentLast) {
   EXPECT_EQ(summary_.rtt, 5ms);
 }
 
-/// Reports list one stream after the other.
+/// The report lists all packets of stream 1 first, and then those of stream 2. The summary must
+/// have them in the order in which they were sent.
 TEST_F(SentHistoryTest, PacketsOfSeveralStreamsComeAsTheyWereSent) {
   for (std::uint16_t seq = 0; seq < 3; ++seq)
     for (std::uint32_t ssrc = 1; ssrc <= 2; ++ssrc, now_ += 1ms)
@@ -237,7 +238,7 @@ TEST_F(SentHistoryTest, ALonePacketFarBehindIsNoRestart) {
   Send(40500, 40501);
   Send(10001, 10002);
   EXPECT_EQ(history_.bytes_in_flight().bytes(), 21000);
-  Send(12000, 12001);  // two that do not follow each other are no restart, either
+  Send(12000, 12001);  // Two packets whose numbers are not consecutive are no restart, either.
   EXPECT_EQ(history_.bytes_in_flight().bytes(), 21000);
 }
 
@@ -283,7 +284,7 @@ TEST_F(SentHistoryTest, AMissingPacketThatExpiredIsNotLost) {
   Send(0, 20);
   Apply(Report(0, "r-r"));
   now_ += 20ms;
-  Apply(Report(0, "rrr-r"));  // packet 3 may be as late as packet 1
+  Apply(Report(0, "rrr-r"));  // Packet 3 may be as late as packet 1 was.
   ASSERT_TRUE(summary_.lost.empty());
   history_.Expire(now_);
   EXPECT_EQ(LostWithin(1s), 0U);
@@ -329,7 +330,7 @@ TEST_F(SentHistoryTest, TheLostTailOfAQuietSourceDoesNotStayInFlight) {
 }
 
 TEST_F(SentHistoryTest, AReorderingWindowOfManyPacketsStillFindsLosses) {
-  const auto send = [&](int from, int until) {  // 1 Gbit/s
+  const auto send = [&](int from, int until) {  // sends at 1 Gbit/s
     for (int seq = from; seq < until; ++seq, now_ += 10us)
       history_.OnSent(1, static_cast<std::uint16_t>(seq),
                       {0, DataSize::Bytes(1250), now_, Ecn::kEct1});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Several streams of one controller, and several controllers, on one link.
+// Tests how several streams of one controller, and several controllers, share a link.
 #include <gtest/gtest.h>
 
 #include <utility>
@@ -27,7 +27,7 @@ class TwoStreams : public ::testing::Test {
     result = Simulate(scenario.config);
     metrics = Measure(scenario, result);
   }
-  /// Returns the rate at which a stream arrived [Mbit/s], without the first 5 s.
+  /// Returns the rate at which the stream `source` arrived [Mbit/s]. The first 5 s do not count.
   double Rate(int source) const {
     const Time origin = scenario.config.forward.origin;
     const Time end = origin + scenario.config.duration;
@@ -75,7 +75,8 @@ TEST_F(TwoStreams, AnEncoderThatIgnoresItsTargetDoesNotTakeTheOthersShare) {
   EXPECT_LT(metrics.queue_ms.p99, 10);
 }
 
-/// A stream such as audio, and an encoder that sends twice its target.
+/// The first stream is strict and has a low rate, as audio has. The encoder of the second stream
+/// sends twice its target.
 TEST_F(TwoStreams, AStrictOneNeverWaitsForTheOther) {
   Camera().obedience = [](Duration) { return 2.0; };
   Lidar().stream.strict = true;
@@ -89,7 +90,8 @@ TEST_F(TwoStreams, AStrictOneNeverWaitsForTheOther) {
   EXPECT_LT(Summarise(latency_ms).p99, 35);
 }
 
-/// A second LiDAR fails: the rate that it needed must be free again.
+/// A second LiDAR stops after 2 s. The minimum rate that was reserved for it must become free
+/// again.
 TEST(SilentStream, LeavesTheLiveOneAsItWas) {
   for (const double needed : {5.0, 10.0, 20.0}) {
     Scenario s = *FindScenario("frames_20M_rtt25", Parameters());
@@ -129,7 +131,8 @@ TEST(BesideOthers, TheStatisticsTellTheirShare) {
   EXPECT_EQ(cross_traffic("frames_20M_rtt25"), 0);
 }
 
-/// On an idle link, and on a link full of other flows, packets arrive as far apart as they leave.
+/// Packets arrive as far apart as they were sent both on an idle link and on a link full of other
+/// flows. Jitter must not make the sender take an idle link for a full one.
 TEST(BesideOthers, NobodyIsFoundOnAnIdleLinkThatJitters) {
   Scenario s = *FindScenario("frames_20M_jitter4", Parameters());
   s.config.forward.path.jitter = 8ms;
@@ -145,7 +148,7 @@ double Jain(Scenario s, double frames_per_second = 50) {
   return Measure(s, Simulate(s.config)).jain;
 }
 
-/// The last flow to join is slowest, and learns least about the others.
+/// The flow that joins last is the slowest flow, so it learns least about the other flows.
 TEST(BesideOthers, FourOfOursThatJoinOneAfterTheOtherShareAlike) {
   Scenario s = *FindScenario("frames_20M_rtt25", Parameters());
   for (int i = 1; i <= 3; ++i) {
@@ -163,7 +166,8 @@ TEST(BesidePrague, OneOfThreeGetsAThird) {
   EXPECT_NEAR(Measure(s, Simulate(s.config)).beside->ours_mbps, 6.7, 1.3);
 }
 
-/// A slow flow has few packets that show others. Even shares are 5 and 4 Mbit/s.
+/// A slow flow has few packets that show the share of the other flows. An even share of the link is
+/// 5 Mbit/s with three other flows, and 4 Mbit/s with four.
 TEST(BesidePrague, OneThatJoinsThreeOrFourIsNotLeftBehind) {
   for (const int others : {3, 4}) {
     Scenario s = *FindScenario("prague_ramp_20M", Parameters());
@@ -175,8 +179,8 @@ TEST(BesidePrague, OneThatJoinsThreeOrFourIsNotLeftBehind) {
   }
 }
 
-/// Packets are few and far apart on a slow link. Jain's index of frames falls to 0.64 and 0.88 if
-/// every measurement of the flow's own rate counts as a drop of the capacity.
+/// On a slow link, packets are few and far apart. If each measurement of the flow's own rate
+/// counted as a drop of the capacity, Jain's index of frames would fall to 0.64 and 0.88.
 TEST(BesidePrague, AtFewMegabitsItGetsItsShareAsWell) {
   const std::pair<const char*, double> even[] = {{"prague_ramp_4M", 0.95},
                                                  {"prague_ramp_8M", 0.97}};
@@ -192,7 +196,8 @@ TEST(Alone, AFlowOfOneMegabitUsesItsLink) {
   EXPECT_GE(Measure(s, Simulate(s.config)).utilisation, 0.93);
 }
 
-/// Jain's index falls to 0.80 and 0.87 if each mostly marked round counts as a capacity drop.
+/// If each round with mostly marked packets counted as a drop of the capacity, Jain's index would
+/// fall to 0.80 and 0.87.
 TEST(BesidePrague, BothGetAboutTheSameBehindAStepAsWell) {
   for (const char* name : {"prague_step_1ms_20M", "prague_step_3ms_20M"})
     for (const double frames_per_second : {50.0, 80.0})
@@ -200,7 +205,8 @@ TEST(BesidePrague, BothGetAboutTheSameBehindAStepAsWell) {
           << name << " " << frames_per_second;
 }
 
-/// Whole scans are paced evenly enough not to lose against Prague.
+/// The pacer must spread the packets of a whole scan evenly. Otherwise the flow would get less than
+/// Prague.
 TEST(BesidePrague, WholeScansGetAboutTheSame) {
   EXPECT_GE(Jain(*FindScenario("prague_ramp_20M", Parameters()), 10), 0.97);
 }
@@ -212,7 +218,7 @@ TEST(TwoFlows, WhoseFramesMeetShareALinkEvenly) {
   EXPECT_GE(Measure(s, Simulate(s.config)).jain, 0.99);
 }
 
-/// A slow link has few packets that show a flow the share of the other.
+/// On a slow link, a flow has few packets that show it the share of the other flow.
 TEST(TwoFlows, ShareASlowLinkEvenlyAtAnyPhase) {
   const auto phases = {0ms, 1ms, 3ms, 4ms, 6ms, 7ms, 9ms, 10ms, 12ms, 13ms, 15ms, 17ms, 19ms};
   double sum = 0;
@@ -228,8 +234,8 @@ TEST(TwoFlows, ShareASlowLinkEvenlyAtAnyPhase) {
   EXPECT_GE(sum / static_cast<double>(phases.size()), 0.99);
 }
 
-/// The frames of the two flows never coincide, and those of one flow get more marks: with the draft
-/// alone, Jain's index is 0.87.
+/// The two flows never send a frame at the same time, and the frames of one flow get more marks.
+/// With the draft alone, Jain's index would be 0.87.
 TEST(TwoFlows, WhoseFramesNeverMeetKeepTheirBalanceAndTheQueue) {
   for (const char* name : {"frames_20M_two_flows", "frames_8M_rtt40"}) {
     for (const Duration phase : {4ms, 10ms}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A link that stands still, and what else may happen in that time.
+// Tests a link that carries nothing for some time, and other events during that time.
 #include <gtest/gtest.h>
 
 #include "src/sim/scenarios.h"
@@ -10,8 +10,8 @@ namespace {
 
 constexpr Duration kFrom = 15s;
 
-/// A link of 8 Mbit/s, RTT 40 ms, carries nothing for `length` from 15 s on. `sources` of 50 frames
-/// a second share the link.
+/// Returns a link of 8 Mbit/s with an RTT of 40 ms that carries nothing for `length` from 15 s on.
+/// The flow has `sources` sources, each with 50 frames per second.
 Scenario Standing(Duration length, std::size_t sources = 1) {
   Scenario s = *FindScenario("frames_8M_rtt40", Parameters());
   s.config.forward.capacity.AddOutage(kFrom, kFrom + length);
@@ -20,7 +20,7 @@ Scenario Standing(Duration length, std::size_t sources = 1) {
   return s;
 }
 
-/// Returns the bytes that left the sender between two times of the run.
+/// Returns the bytes that the sender sent between two times of the run.
 std::int64_t Sent(const SimulationResult& run, Duration from, Duration until) {
   const Time origin = run.config.forward.origin;
   std::int64_t bytes = 0;
@@ -37,14 +37,14 @@ TEST(Standstill, NothingIsBegunInItByASourceThatLeavesItsWindowUnused) {
   Scenario s = Standing(1s);
   s.config.flows[0].sources[0].stream.max_bitrate = Mbps(2);
   const SimulationResult run = Simulate(s.config);
-  // The window stays open for a round trip and until the next report is overdue; then 50 kbit/s
-  // leave.
+  // The window stays open for one round trip, and then until the next report is overdue. After
+  // that, packets are sent at 50 kbit/s only.
   const DataSize most = Mbps(2) * 140ms + Parameters().rate_pace_min * 1s;
   EXPECT_LE(Sent(run, kFrom, kFrom + 1s), most.bytes());
   EXPECT_GE(Utilisation(run, kFrom + 2s, kFrom + 5s), 0.24) << "of the 25 % that it can use";
 }
 
-/// Bursts of a source that sends 2 Mbit/s probe the link for three seconds.
+/// A source that sends 2 Mbit/s probes the link in bursts during the first three seconds.
 TEST(Standstill, ClosesTheWindowToProbes) {
   for (Duration from = 2500ms; from < 6s; from += 311ms) {
     Scenario s = Standing(0s);
@@ -59,7 +59,8 @@ TEST(Standstill, ClosesTheWindowToProbes) {
   }
 }
 
-/// Whole scans at 3 Mbit/s, the stream's maximum, over a link of 10 Mbit/s with short gaps.
+/// The source sends whole scans at 3 Mbit/s, which is also the stream's maximum. The link carries
+/// 10 Mbit/s, with short gaps.
 TEST(Standstill, LeavesABacklogThatSoonGoesToAStreamAtItsMaximum) {
   Scenario s = *FindScenario("frames_8M_rtt40", Parameters());
   s.config.forward.capacity = link::Capacity::Constant(Mbps(10));

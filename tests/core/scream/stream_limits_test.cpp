@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Streams at the limits of what they are given: sums, turns, backlogs, frames.
+// Tests streams at the limits of their settings: sums of rates, turns, backlogs, frames.
 #include <gtest/gtest.h>
 
 #include "src/scream/streams.h"
@@ -12,7 +12,7 @@ class Limits : public ::testing::Test {
  protected:
   StreamId Add(const StreamConfig& config) { return streams_.Add(config); }
   double Target(StreamId id) { return streams_.Find(id)->target_bitrate().bits_per_second() / 1e6; }
-  /// Adds a stream with a target of 1000 bytes a millisecond.
+  /// Adds a stream whose target is 8 Mbit/s, or 1000 bytes per millisecond.
   StreamId AddAt8Mbps() {
     const StreamId id = Add({1, Mbps(0), Mbps(1), Mbps(100)});
     streams_.Allocate(kStart, Mbps(8));
@@ -22,7 +22,7 @@ class Limits : public ::testing::Test {
     for (int i = 0; i < packets; ++i)
       streams_.Find(id)->OnQueued(now, {1, DataSize::Bytes(1000), i + 1 == packets, timestamp});
   }
-  /// Returns how many of the next packets to leave are of the stream.
+  /// Returns how many of the next `packets` packets to be sent belong to `stream`.
   int TurnsOf(StreamId stream, int packets) {
     int turns = 0;
     for (int i = 0; i < packets; ++i) {
@@ -45,7 +45,7 @@ TEST_F(Limits, TheMaximumOfAllIsNoMoreThanIsSet) {
   EXPECT_NEAR(InMbps(streams_.start_bitrate()), 5, 1e-6);
   parameters_.max_total_bitrate = Mbps(12);
   EXPECT_NEAR(InMbps(streams_.max_bitrate()), 12, 1e-6);
-  parameters_.max_total_bitrate = Mbps(2);  // below the sum of both minima
+  parameters_.max_total_bitrate = Mbps(2);  // less than the sum of the two minima
   EXPECT_NEAR(InMbps(streams_.max_bitrate()), 4, 1e-6);
 }
 
@@ -77,7 +77,7 @@ TEST_F(Limits, ASilentStreamHasWhatItNeedsToComeBack) {
 TEST_F(Limits, AStreamIsSilentAfterASecondWithoutPackets) {
   const StreamId a = Add({1, Mbps(1), Mbps(1), Mbps(10)});
   Queue(a, kStart, 1);
-  EXPECT_TRUE(streams_.Find(a)->active(kStart + 9s));  // its packet still waits
+  EXPECT_TRUE(streams_.Find(a)->active(kStart + 9s));  // One packet of the stream is still queued.
   streams_.OnSent(kStart + 9s, a, 1, DataSize::Bytes(1000));
   EXPECT_TRUE(streams_.Find(a)->active(kStart + 9s + 999ms));
   EXPECT_FALSE(streams_.Find(a)->active(kStart + 10s));
@@ -86,11 +86,12 @@ TEST_F(Limits, AStreamIsSilentAfterASecondWithoutPackets) {
 TEST_F(Limits, OnlyTheLongestBacklogsMakeRoom) {
   const StreamId a = Add({1, Mbps(0), Mbps(1), Mbps(100)});
   const StreamId b = Add({1, Mbps(0), Mbps(1), Mbps(100)});
-  streams_.Allocate(kStart, Mbps(16));  // 8 Mbit/s each: 20,000 bytes in a frame of 20 ms
-  Queue(a, kStart, 120);                // 120 ms
-  Queue(b, kStart, 59);                 // 59 ms, less than half
+  // Each stream gets 8 Mbit/s: 20,000 bytes in a frame of 20 ms.
+  streams_.Allocate(kStart, Mbps(16));
+  Queue(a, kStart, 120);  // a backlog of 120 ms
+  Queue(b, kStart, 59);   // a backlog of 59 ms, less than half
   streams_.LeaveRoomForBacklogs(kStart);
-  // 100,000 bytes are to leave within 200 ms: 4 Mbit/s.
+  // Stream a has a backlog of 100,000 bytes. To send it within 200 ms takes 4 Mbit/s.
   EXPECT_NEAR(Target(a), 4, 1e-3);
   EXPECT_NEAR(Target(b), 8, 1e-3);
 }
@@ -109,7 +110,7 @@ TEST_F(Limits, AFrameIsNoBacklogAndWhatIsNeededStays) {
   EXPECT_NEAR(Target(a), 3, 1e-3);
 }
 
-/// 100,000 bytes at 8 Mbit/s are a frame of 100 ms: half of it is left after 50 ms.
+/// At 8 Mbit/s, 100,000 bytes are a frame of 100 ms. Half of the frame is still queued after 50 ms.
 TEST_F(Limits, WhatIsLeftOfAWholeScanIsABacklogWhenTheNextOneComes) {
   const StreamId a = AddAt8Mbps();
   Queue(a, kStart, 1, 1);
@@ -117,7 +118,8 @@ TEST_F(Limits, WhatIsLeftOfAWholeScanIsABacklogWhenTheNextOneComes) {
   EXPECT_EQ(streams_.Find(a)->backlog(kStart + 100ms), DataSize());
   EXPECT_EQ(streams_.Find(a)->backlog(kStart + 150ms), DataSize::Bytes(50'000));
   EXPECT_EQ(streams_.Find(a)->backlog(kStart + 300ms), DataSize::Bytes(100'000));
-  // The next scan is to be smaller by the backlog: 50,000 bytes in 100 ms are 4 Mbit/s.
+  // The next scan must be smaller than the target allows, by the size of the backlog. 50,000 bytes
+  // in 100 ms are 4 Mbit/s.
   EXPECT_NEAR(InMbps(streams_.Find(a)->backlog_rate(kStart + 150ms)), 4, 1e-3);
   streams_.LeaveRoomForBacklogs(kStart + 100ms);
   EXPECT_NEAR(Target(a), 8, 1e-3);
@@ -125,14 +127,14 @@ TEST_F(Limits, WhatIsLeftOfAWholeScanIsABacklogWhenTheNextOneComes) {
   EXPECT_NEAR(Target(a), 4, 1e-3);
 }
 
-/// The scan's queue is the longest, but most of it leaves before the next scan.
+/// The queue of `scans` is the longest, but most of it is sent before the next scan is queued.
 TEST_F(Limits, AScanThatIsLeavingIsNotTheLongestBacklog) {
   const StreamId scans = Add({1, Mbps(0), Mbps(1), Mbps(100)});
   const StreamId frames = Add({1, Mbps(0), Mbps(1), Mbps(100)});
   streams_.Allocate(kStart, Mbps(16));
   Queue(scans, kStart, 1, 1);
   Queue(scans, kStart + 100ms, 99, 2);
-  Queue(frames, kStart + 100ms, 60);  // 40 ms beyond a frame
+  Queue(frames, kStart + 100ms, 60);  // The queue exceeds one frame by 40 ms.
   streams_.LeaveRoomForBacklogs(kStart + 101ms);
   EXPECT_NEAR(Target(scans), 8, 1e-3);
   EXPECT_NEAR(Target(frames), 8 - 1.6, 1e-3);
@@ -166,7 +168,7 @@ TEST_F(Limits, TheStreamWithTheHighestTargetSetsThePeriod) {
   streams_.Find(slow)->Configure({0.1, Mbps(0), Mbps(1), Mbps(100)});
   streams_.Allocate(kStart + 240ms, Mbps(10));
   EXPECT_NEAR(Seconds(streams_.frame_period()), 0.03, 1e-6);
-  // A silent stream does not count, however much it needs.
+  // A stream that is silent does not count, even if its needed rate is high.
   streams_.Find(slow)->Configure({1, Mbps(0), Mbps(1), Mbps(100), Mbps(20)});
   streams_.Find(fast)->OnQueued(kStart + 1300ms, {1, DataSize::Bytes(1000), false, 99});
   streams_.Allocate(kStart + 1300ms, Mbps(10));
@@ -241,7 +243,7 @@ class ScanGroups : public ::testing::Test {
 TEST_F(ScanGroups, AScanIsNotBegunWhereItWouldBeLateAlsoOnceTheNextIsQueued) {
   Scan(kStart, 1);
   Slice(kStart + 100ms, 2, 0);
-  // 8000 bytes at 0.3 Mbit/s take 213 ms: too late for scan 1, not for scan 2.
+  // 8000 bytes at 0.3 Mbit/s take 213 ms. This is too late for scan 1, but not for scan 2.
   EXPECT_EQ(stream_.LatePackets(kStart + 100ms, Mbps(0.3)), 8U);
   EXPECT_EQ(stream_.LatePackets(kStart + 100ms, Mbps(1)), 0U);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Several streams: shares, turns, frames and late packets.
+// Tests several streams: their shares of the rate, whose turn it is, frames and late packets.
 #include "src/scream/streams.h"
 
 #include <gtest/gtest.h>
@@ -46,7 +46,7 @@ TEST_F(StreamsTest, ASilentStreamLeavesItsShareToTheOthers) {
   const StreamId a = Add(1, 1, 100), b = Add(1, 1, 100);
   streams_.Allocate(kStart, Mbps(10));
   EXPECT_NEAR(Target(b), 5, 1e-3);
-  streams_.Allocate(kStart + 2s, Mbps(10));  // no stream sends yet: all may start
+  streams_.Allocate(kStart + 2s, Mbps(10));  // No stream has sent yet, so both may start.
   EXPECT_NEAR(Target(a), 5, 1e-3);
   streams_.Find(a)->OnQueued(kStart + 2s, {1, DataSize::Bytes(1000), true, 0});
   streams_.Allocate(kStart + 2s, Mbps(10));
@@ -165,7 +165,7 @@ TEST_F(StreamsTest, AStrictOneLeavesTheOthersWhatTheyNeed) {
 
 class StreamTest : public ::testing::Test {
  protected:
-  /// A frame of `packets` packets of 1000 bytes.
+  /// Queues a frame of `packets` packets of 1000 bytes.
   void Frame(Time now, int packets, std::uint32_t timestamp) {
     for (int i = 0; i < packets; ++i)
       stream_.OnQueued(now, {1, DataSize::Bytes(1000), i + 1 == packets, timestamp});
@@ -192,7 +192,7 @@ TEST_F(StreamTest, AFrameThatHasBegunGoesOutToItsEnd) {
   EXPECT_EQ(stream_.LatePackets(kStart + 301ms, DataRate::Infinite()), 2U);
 }
 
-/// Four slices of two packets, 25 ms apart: a scan.
+/// Scans of four slices. The slices are 25 ms apart, and each has two packets.
 class ScanTest : public StreamTest {
  protected:
   void Scan(Time now, std::uint32_t scan) {
@@ -223,7 +223,7 @@ TEST_F(ScanTest, IsNotBegunWhereItsLastSliceWouldBeLate) {
   Scan(kStart - 100ms, 0);
   for (int i = 0; i < 8; ++i) stream_.OnSent(kStart, 1, DataSize::Bytes(1000));
   Scan(kStart, 1);
-  // 8000 bytes at 0.32 Mbit/s take 200 ms, from the middle of the capture on.
+  // 8000 bytes at 0.32 Mbit/s take 200 ms. The scan is late 200 ms after the middle of its capture.
   EXPECT_EQ(stream_.LatePackets(kStart + 38ms, Mbps(0.32)), 8U);
   EXPECT_EQ(stream_.LatePackets(kStart + 37ms, Mbps(0.32)), 0U);
 }
@@ -275,7 +275,7 @@ TEST_F(ScanTest, GoesOutToItsEndForALittleLongerOnceItHasBegun) {
   Scan(kStart, 1);
   stream_.OnSent(kStart, 1, DataSize::Bytes(1000));
   stream_.OnSent(kStart, 1, DataSize::Bytes(1000));
-  // Three slices are left.
+  // One slice was sent; three slices are still queued.
   EXPECT_EQ(stream_.LatePackets(kStart + 1050ms, DataRate::Infinite()), 0U);
   EXPECT_EQ(stream_.LatePackets(kStart + 1051ms, DataRate::Infinite()), 6U);
 }
@@ -293,7 +293,8 @@ TEST_F(StreamTest, AQueueThatOutlastsTheFramePeriodLowersTheRate) {
   EXPECT_DOUBLE_EQ(stream_.queue_compensation(), 0.5);
 }
 
-/// Sends frames of one packet: twenty wait at once, they leave, and four more come.
+/// Sends frames of one packet each. First twenty frames are queued together and then removed. Then
+/// four more frames are queued and removed one by one.
 double RateAdjustFactorAfterBacklog(Duration period) {
   const Parameters parameters;
   Stream stream(parameters, {1, Mbps(0), Mbps(4), Mbps(50)});
@@ -313,16 +314,16 @@ double RateAdjustFactorAfterBacklog(Duration period) {
   return stream.queue_compensation();
 }
 
-/// With the draft, a queue that is gone lowers the rate for half a second, in which the window
-/// grows beyond the link.
+/// After a sudden backlog was sent, the draft would lower the rate for another half a second. The
+/// window would grow beyond the link in that time.
 TEST(StreamAfterSuddenBacklog, AQueueThatIsGoneLowersTheRateNoMore) {
   EXPECT_LT(RateAdjustFactorAfterBacklog(20ms), 0.05);
-  EXPECT_GT(RateAdjustFactorAfterBacklog(100ms), 0.4);  // whole scans
+  EXPECT_GT(RateAdjustFactorAfterBacklog(100ms), 0.4);  // This is the period of whole scans.
 }
 
 TEST_F(StreamTest, FramesAboveTheNominalSizeAreCompensated) {
   for (int i = 0; i < 500; ++i) {
-    Frame(kStart + i * 20ms, 11, static_cast<std::uint32_t>(i));  // nominal: 10
+    Frame(kStart + i * 20ms, 11, static_cast<std::uint32_t>(i));  // The nominal size is 10.
     stream_.OnDropped(kStart, 11);
   }
   EXPECT_NEAR(stream_.queue_compensation(), 0.1, 1e-3);
@@ -330,7 +331,7 @@ TEST_F(StreamTest, FramesAboveTheNominalSizeAreCompensated) {
 
 TEST_F(StreamTest, APauseIsNoFramePeriod) {
   Frame(kStart, 1, 1);
-  Frame(kStart + 500ms, 1, 2);  // perhaps a pause, too
+  Frame(kStart + 500ms, 1, 2);  // This may be a pause, too.
   EXPECT_NEAR(Seconds(stream_.frame_period()), 0.068, 1e-6);
   Frame(kStart + 3s, 1, 3);
   EXPECT_NEAR(Seconds(stream_.frame_period()), 0.068, 1e-6);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Competing flows behave as they should: alone on a link, and by their published response
-// functions.
+// Tests that the simulated TCP flows use a link fully when alone, and that their windows follow the
+// published response functions.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -65,7 +65,7 @@ TEST_P(Greedy, SurvivesAnOutage) {
 INSTANTIATE_TEST_SUITE_P(Kinds, Greedy,
                          ::testing::Values(TcpKind::kReno, TcpKind::kCubic, TcpKind::kPrague));
 
-/// Returns the mean window over a path that only random loss limits.
+/// Returns the mean window over a path whose only limit is random loss.
 double MeanWindowUnderLoss(TcpKind kind, double loss, Duration rtt) {
   double sum = 0;
   constexpr int kRuns = 2;
@@ -80,8 +80,8 @@ double MeanWindowUnderLoss(TcpKind kind, double loss, Duration rtt) {
   return sum;
 }
 
-/// The window of Reno lies between sqrt(3/2p), for periodic losses, and 1.31/sqrt(p), for
-/// independent ones.
+/// Reno's window is sqrt(3/2p) if losses are periodic, and 1.31/sqrt(p) if losses are independent.
+/// The simulated window must be between these values.
 TEST(Response, OfRenoFallsWithTheSquareRootOfTheLoss) {
   for (const double p : {0.0005, 0.002, 0.01}) {
     const double window = MeanWindowUnderLoss(TcpKind::kReno, p, 50ms) * std::sqrt(p);
@@ -90,7 +90,8 @@ TEST(Response, OfRenoFallsWithTheSquareRootOfTheLoss) {
   }
 }
 
-/// RFC 9438, section 5.1: 1.054 RTT^0.75 / p^0.75, if that is more than Reno's.
+/// The window in RFC 9438, section 5.1, is 1.054 RTT^0.75 / p^0.75, if this is more than Reno's
+/// window.
 TEST(Response, OfCubicFallsWithItsThreeQuarterPower) {
   for (const double p : {0.00003, 0.0001}) {
     const double published = 1.054 * std::pow(0.1, 0.75) / std::pow(p, 0.75);
@@ -116,7 +117,7 @@ TEST(Prague, KeepsTheQueueAtAStepAndTheLinkFull) {
   EXPECT_EQ(r.others[0].packets_lost, 0U);
 }
 
-/// What RFC 9332 promises: a classic and an L4S flow get about the same.
+/// RFC 9332 promises that a classic flow and an L4S flow get about the same rate.
 TEST(Prague, SharesADualQueueWithCubic) {
   SimulationConfig config = Path(TcpKind::kPrague, Mbps(40), 20ms);
   config.others.push_back({TcpKind::kCubic});
@@ -127,8 +128,8 @@ TEST(Prague, SharesADualQueueWithCubic) {
   EXPECT_LE(std::max(prague, cubic) / std::min(prague, cubic), 2) << prague << " and " << cubic;
 }
 
-/// Each file is one packet. A late packet is sent again after a second, and its acknowledgement
-/// comes while a later file is under way.
+/// Each file is a single packet. If the packet is late, the sender sends it again after a second.
+/// The acknowledgement of the late packet then arrives while another file is being sent.
 TEST(Files, TakeARoundTripAtLeastThoughAcknowledgementsOfEarlierFilesComeLate) {
   SimulationConfig config = Path(TcpKind::kCubic, Mbps(20), 40ms);
   config.forward.path.reorder = 0.02;
@@ -140,7 +141,7 @@ TEST(Files, TakeARoundTripAtLeastThoughAcknowledgementsOfEarlierFilesComeLate) {
   EXPECT_GE(*std::max_element(times.begin(), times.end()), 1.0) << "no packet was late";
 }
 
-/// Files of one packet over an empty link.
+/// Returns a flow that sends files of one packet each over an otherwise empty link.
 SimulationConfig SmallFiles() {
   SimulationConfig config = Path(TcpKind::kCubic, Mbps(20), 40ms);
   config.others[0].files = FileConfig{DataSize::Bytes(1500), DataSize::Bytes(1500)};
