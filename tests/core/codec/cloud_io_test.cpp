@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Conversions between raw clouds and the clouds that the codecs code.
+// Tests the conversions between raw clouds and the clouds that the codecs code.
 #include "src/codec/cloud_io.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ namespace {
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// x, y, z and intensity a point.
+/// Returns raw bytes with the x, y, z and intensity of each point.
 std::vector<std::uint8_t> RawPoints(const std::vector<std::array<float, 4>>& points) {
   std::vector<std::uint8_t> raw(points.size() * sizeof points[0]);
   std::memcpy(raw.data(), points.data(), raw.size());
@@ -27,7 +27,7 @@ XyzCloud Read(const std::vector<std::array<float, 4>>& points, bool with_intensi
   const CloudLayout layout{*PointFields::Parse("x:F32:0,y:F32:4,z:F32:8,intensity:F32:12"), 16};
   const auto raw = RawPoints(points);
   XyzCloud cloud;
-  cloud.intensity = {9};  // of the cloud before
+  cloud.intensity = {9};  // left from an earlier cloud
   ReadXyz({raw.data(), raw.size()}, layout, with_intensity, &cloud);
   return cloud;
 }

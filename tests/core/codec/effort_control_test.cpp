@@ -10,20 +10,21 @@
 namespace lidar::codec {
 namespace {
 
-/// A machine. `speeds` are million returns a second, by effort.
+/// A machine that runs the encoder. `speeds` are the speeds at the efforts 0 to 3, in million
+/// returns per second.
 struct Machine {
   std::array<double, 4> speeds = {38, 8, 5, 2};
   double factor = 1;
   double noise = 0.1;
 };
 
-/// A sensor of 8 slices a scan at 10 Hz.
+/// A sensor with 8 slices per scan and 10 scans per second.
 struct Sensor {
-  std::size_t returns = 2'700;  // a slice
+  std::size_t returns = 2'700;  // per slice
   Duration sweep{12'500'000};
 };
 
-/// Returns the effort of every slice over some seconds.
+/// Encodes slices for `seconds`, and returns the effort that was used for each slice.
 std::vector<unsigned> Play(const Machine& machine, const Sensor& sensor, double seconds,
                            EffortControl* control) {
   std::mt19937 random(4);
@@ -51,7 +52,8 @@ TEST(EffortControl, TakesTheHighestEffortThatFits) {
     std::size_t returns;
     unsigned effort;
   };
-  // A sweep of 12.5 ms allows 3.1 ms: 6,200 returns at effort 3, 15,600 at 2, 25,000 at 1.
+  // A slice of 12.5 ms may be encoded for 3.1 ms. This is enough for 6,200 returns at effort 3, for
+  // 15,600 at effort 2 and for 25,000 at effort 1.
   for (const Case& c : {Case{2'700, 3}, Case{10'000, 2}, Case{20'000, 1}, Case{60'000, 0}}) {
     EffortControl control;
     EXPECT_EQ(Play({}, {c.returns}, 10, &control).back(), c.effort) << c.returns;
@@ -120,8 +122,8 @@ TEST(EffortControl, WaitsLongerEachTimeThatAnEffortFailed) {
     EXPECT_GT(raised_at[i] - raised_at[i - 1], 1.5 * (raised_at[i - 1] - raised_at[i - 2]));
 }
 
-/// Slices of 1,000 returns that take a tenth of the sweep at effort 2, and 2.7 times that at
-/// effort 3.
+/// Each slice has 1,000 returns. The encoder needs a tenth of the sweep for it at effort 2, and 2.7
+/// times as long at effort 3.
 TEST(EffortControl, LearnsWhatALevelCostsFromTheFirstWindowOfItAlone) {
   EffortControl control;
   const auto play = [&](double seconds, Duration at_effort_1, Duration at_effort_2) {
@@ -149,7 +151,7 @@ TEST(EffortControl, LetsSingleSlicesBeLate) {
   }
 }
 
-/// A sensor whose window shows the road in one slice of eight, and the sky in the others.
+/// A sensor behind a window sees the road in one slice of eight, and the sky in the other slices.
 TEST(EffortControl, LeavesRoomForTheSliceWithTheMostReturns) {
   EffortControl control;
   const Machine machine;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Scans made of integers alone, and the bytes that they must be coded to for ever.
+// Scans that are computed with integers only, and the bytes to which they must always be coded.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 
 namespace lidar::test {
 
-/// A sensor whose beams are shifted against each other.
+/// Returns a sensor whose beams have different column shifts.
 inline SensorModel GoldenSensor(std::uint32_t beams, std::uint32_t columns) {
   SensorModel model;
   model.columns_per_scan = columns;
@@ -30,7 +30,7 @@ struct GoldenScan {
   unsigned lost_percent = 10;
 };
 
-/// Walls, poles, noise, far returns and gaps.
+/// Returns an image with walls, poles, noise, far returns and gaps.
 inline codec::RangeImage GoldenImage(const GoldenScan& scan) {
   std::mt19937 random(scan.beams * 131 + scan.columns);
   codec::RangeImage image;
@@ -63,7 +63,8 @@ inline std::vector<std::uint8_t> ReadGolden(const std::string& file) {
   return bytes;
 }
 
-/// Expects the bytes of the file, which UPDATE_GOLDEN=1 in the environment writes.
+/// Expects that `bytes` equal the contents of the file. If UPDATE_GOLDEN is set in the environment,
+/// writes the file first.
 inline void ExpectGolden(const std::string& file, const std::vector<std::uint8_t>& bytes) {
   if (std::getenv("UPDATE_GOLDEN") != nullptr) {
     std::ofstream(file, std::ios::binary)
@@ -79,7 +80,7 @@ struct GoldenBlock {
   const char* name;
   codec::RangeCoder coder;
   GoldenScan scan;
-  std::uint32_t parts;  // the grid's step
+  std::uint32_t parts;  // the step of the grid
   unsigned intensity_bits;
   codec::FullScale full = codec::FullScale::kByte;
   std::uint32_t kept_beams = 0;
@@ -89,8 +90,8 @@ struct GoldenBlock {
 };
 inline void PrintTo(const GoldenBlock& block, std::ostream* out) { *out << block.name; }
 
-/// Expects that the block is coded to the bytes of its file, and that these decode to the same
-/// returns.
+/// Expects that the block is coded to the bytes of its golden file, and that these bytes decode to
+/// the rounded returns of the block.
 inline void ExpectGoldenBlock(const GoldenBlock& c, const std::string& folder,
                               const codec::IntegerCoder* integers) {
   const SensorModel model = GoldenSensor(c.scan.beams, c.columns_per_scan);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Our coder gives the bytes that it always gave.
+// Tests that the range coders still write the bytes of the golden files.
 #include "tests/core/codec/golden.h"
 
 #include "src/base/byte_writer.h"
@@ -17,9 +17,10 @@ TEST_P(GoldenBytes, AreWhatABlockIsCodedTo) {
 INSTANTIATE_TEST_SUITE_P(
     All, GoldenBytes,
     ::testing::Values(
-        // A whole turn, in which the last column is the neighbour of the first.
+        // A whole turn. The last column is the neighbour of the first column.
         GoldenBlock{"adaptive_turn", RangeCoder::kAdaptive, {8, 1024, 0, 1, 10}, 41 * 256, 5},
-        // Short rows, a step between whole cells of 8 mm, beams left out.
+        // A sector with short rows, with a step that is no multiple of the 8 mm cells, and with
+        // some beams left out.
         GoldenBlock{"adaptive_slice",
                     RangeCoder::kAdaptive,
                     {16, 128, 960, 8, 25},
@@ -27,11 +28,12 @@ INSTANTIATE_TEST_SUITE_P(
                     0,
                     FullScale::kByte,
                     12},
-        // Every pixel has a return, so there is no mask.
+        // Each pixel has a return, so there is no mask.
         GoldenBlock{
             "adaptive_dense", RangeCoder::kAdaptive, {4, 300, 100, 1, 0}, 256, 8, FullScale::kWord},
         GoldenBlock{"adaptive_empty", RangeCoder::kAdaptive, {4, 64, 0, 1, 100}, 256, 0},
-        // Blended contexts: a turn, a sector whose rows end in a part of a group, all pixels, none.
+        // Blended contexts: a whole turn, a sector whose rows are no multiple of a group, a sector
+        // in which each pixel has a return, and a sector without returns.
         GoldenBlock{"blended_turn", RangeCoder::kBlended, {8, 1024, 0, 1, 10}, 41 * 256, 5},
         GoldenBlock{"blended_slice",
                     RangeCoder::kBlended,
@@ -43,7 +45,8 @@ INSTANTIATE_TEST_SUITE_P(
         GoldenBlock{
             "blended_dense", RangeCoder::kBlended, {4, 300, 100, 1, 0}, 256, 8, FullScale::kWord},
         GoldenBlock{"blended_empty", RangeCoder::kBlended, {4, 64, 0, 1, 100}, 256, 0},
-        // Each effort of the mixing coder: turns and sectors, with levels and without, all gaps.
+        // The mixing coder at each effort: whole turns and sectors, with and without intensity
+        // levels. The last case of the list has gaps only.
         GoldenBlock{"mixing1_turn",
                     RangeCoder::kMixing,
                     {8, 1024, 0, 1, 10},
@@ -80,7 +83,7 @@ INSTANTIATE_TEST_SUITE_P(
                     0,
                     1024,
                     3},
-        // Refined models.
+        // The mixing coder with refined models.
         GoldenBlock{"refined2_slice",
                     RangeCoder::kMixing,
                     {16, 128, 960, 8, 25},
@@ -112,8 +115,8 @@ INSTANTIATE_TEST_SUITE_P(
                     2}),
     [](const auto& c) { return c.param.name; });
 
-/// Decodes bins that an encoder chose. The choice is no part of the format, so the file stays when
-/// encoders choose better.
+/// Decodes a block whose bins an encoder chose. The format does not prescribe the choice, so the
+/// file stays the same when an encoder chooses better.
 TEST(GoldenChoice, ComesBackAsItWasChosen) {
   const test::GoldenScan scan{16, 256, 512, 1, 5};
   const SensorModel model = test::GoldenSensor(scan.beams, 1024);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What any slice decoder must do with damaged streams.
+// Checks that each slice decoder must pass with damaged streams.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -13,16 +13,17 @@ namespace lidar::test {
 constexpr std::uint32_t kHostileMaxPoints = 4096;
 constexpr int kMutations = 400;
 
-/// Organised slices of RoomSensor().
+/// Returns the format of organised slices of RoomSensor().
 inline codec::CloudFormat RoomFormat() { return {OrganisedLayout(), 32, RoomSensor()}; }
 
-/// The raw cloud of a slice that fits kHostileMaxPoints.
+/// Returns the raw cloud of a slice that has at most kHostileMaxPoints points.
 inline std::vector<std::uint8_t> SmallSlice() {
   const SensorModel model = RoomSensor();
   return RawCloud(model, RoomScan(model, 0, 64));
 }
 
-/// Returns how many of kMutations damaged streams decode. Each gives a cloud within the limits.
+/// Decodes kMutations damaged copies of the stream, and returns how many of them decode. Expects
+/// that each decoded cloud is within the limits.
 template <class Decoder>
 int CountDecodedMutations(const std::vector<std::uint8_t>& stream, Decoder* decoder) {
   std::mt19937 random(42);
@@ -30,7 +31,7 @@ int CountDecodedMutations(const std::vector<std::uint8_t>& stream, Decoder* deco
   for (int i = 0; i < kMutations; ++i) {
     auto bytes = stream;
     const std::size_t damage = 1 + random() % 4;
-    // Half of the damage hits the headers.
+    // About half of the flipped bits are in the first 64 bytes, which contain the headers.
     for (std::size_t k = 0; k < damage; ++k) {
       const std::size_t reach =
           random() % 2 == 0 ? std::min<std::size_t>(64, bytes.size()) : bytes.size();
@@ -47,7 +48,8 @@ int CountDecodedMutations(const std::vector<std::uint8_t>& stream, Decoder* deco
   return decoded;
 }
 
-/// If `all`, a missing last byte must be noticed, too.
+/// Expects that beginnings of the stream do not decode. If `all` is true, the stream without its
+/// last byte must not decode either.
 template <class Decoder>
 void ExpectNothingOfCutStreams(const std::vector<std::uint8_t>& stream, bool all,
                                Decoder* decoder) {
@@ -59,7 +61,7 @@ void ExpectNothingOfCutStreams(const std::vector<std::uint8_t>& stream, bool all
   EXPECT_TRUE(decoder->Decode({stream.data(), stream.size()}));
 }
 
-/// Fields whose types no decoder writes.
+/// Returns a format with fields of types that no decoder writes.
 inline codec::CloudFormat OddFormat() {
   codec::CloudFormat format = RoomFormat();
   format.layout.fields = *PointFields::Parse("x:F32:0,y:F32:4,z:F32:8,intensity:U8:12,range:U8:13");
@@ -67,7 +69,8 @@ inline codec::CloudFormat OddFormat() {
   return format;
 }
 
-/// `decoder` must have OddFormat().
+/// Expects that the decoder sets the fields of odd types to 0 and writes nothing after the cloud.
+/// `decoder` must have the format OddFormat().
 template <class Decoder>
 void ExpectOddFieldsToStayZero(const std::vector<std::uint8_t>& stream, Decoder* decoder) {
   const auto shape = decoder->Decode({stream.data(), stream.size()});

@@ -27,7 +27,7 @@ INSTANTIATE_TEST_SUITE_P(All, RangeCoders,
                                            test::CodingCase{RangeCoder::kBlended, 40.5, 5},
                                            test::CodingCase{RangeCoder::kBlended, 1, 8}));
 
-// The encoder computes bins in floating point.
+// The encoder computes bins in floating point, but must find the same bins as the grid.
 TEST(RangeEncoders, PutRangesAtTheEdgesOfBinsWhereTheGridPutsThem) {
   const SensorModel model = test::RoomSensor(1);
   test::Codec codec(model);
@@ -50,7 +50,7 @@ struct Piece {
   unsigned symbol;
   std::uint32_t bits;
   unsigned count;
-  std::uint32_t more;  // written as plain bits after the symbol 3
+  std::uint32_t more;  // is written as plain bits after the symbol 3
 };
 
 std::vector<Piece> RandomPieces(std::size_t count) {
@@ -118,8 +118,8 @@ TEST(Rans, NoticesAStreamThatEndsTooEarly) {
   }
 }
 
-/// A damaged stream is that of other symbols, so some damage passes. The words are used up either
-/// way.
+/// A damaged stream is a valid stream of other symbols, so the decoder does not notice all damage.
+/// It also reads the same number of words, so only its final states show the damage.
 TEST(Rans, NoticesMostFlippedBitsOfSymbolsByTheStatesAtTheEnd) {
   constexpr unsigned kSymbols = 40;
   RansEncoder encoder;
@@ -132,7 +132,7 @@ TEST(Rans, NoticesMostFlippedBitsOfSymbolsByTheStatesAtTheEnd) {
   std::vector<std::uint8_t> bytes;
   encoder.Finish(&bytes);
   std::size_t passed = 0;
-  for (std::size_t bit = 8; bit < 8 * bytes.size(); ++bit) {  // behind the sizes
+  for (std::size_t bit = 8; bit < 8 * bytes.size(); ++bit) {  // The first byte has the sizes.
     auto damaged = bytes;
     damaged[bit / 8] ^= static_cast<std::uint8_t>(1U << bit % 8);
     std::vector<std::uint8_t> padded;
@@ -251,7 +251,7 @@ TEST_F(HostileHeaders, AreReadUpToTheirLimitsAndNotBeyond) {
     for (const std::uint32_t number :
          {n.beams, n.first_column, n.columns, 1U, RangeGrid::kParts, n.payload})
       WriteVarint(number, &writer);
-    writer.U8(0);  // the payload
+    writer.U8(0);  // the only byte of the payload
     return Reads(bytes);
   };
   constexpr std::uint32_t kBeams = RangeHeader::kMaxBeams;
@@ -297,7 +297,7 @@ TEST_F(HostileHeaders, ThatKeptNoBeamOrMoreThanThereAreAreRefused) {
   EXPECT_EQ(read->kept_beams, 31U);
   EXPECT_EQ(reader.remaining(), 0U);
   for (const std::uint8_t kept : std::initializer_list<std::uint8_t>{0, 32, 33}) {
-    bytes[bytes.size() - 2] = kept;  // before the payload's length
+    bytes[bytes.size() - 2] = kept;  // the byte before the length of the payload
     EXPECT_FALSE(Reads(bytes)) << unsigned{kept};
   }
 }

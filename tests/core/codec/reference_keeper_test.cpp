@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What is remembered for references, and how much of it.
+// Tests which slices the encoder remembers as references, and how much memory they take.
 #include "src/codec/reference_keeper.h"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ TEST(ReferenceKeeper, LetsOldSlicesGoWhereTheyAreTooLargeAndRemembersNewOnes) {
   ReferenceKeeper keeper;
   for (std::uint32_t scan = 0; scan < 40; ++scan) {
     const Time now{scan * 100ms};
-    // The receiver is there, and has no slice yet.
+    // The acknowledgement tells that there is a receiver, and that it has no slice yet.
     keeper.OnAcknowledged(now, kOneReceiver, 0, UINT32_MAX);
     for (std::uint32_t index = 0; index < kSlices; ++index) {
       EXPECT_TRUE(keeper.Begin(now, {scan, index, kSlices})) << scan;
@@ -68,7 +68,7 @@ TEST(ReferenceKeeper, HoldsNoMemoryForAReceiverThatIsGone) {
   EXPECT_GT(keeper.bytes(), 0U);
   EXPECT_FALSE(keeper.Begin(Time{3s}, {2, 0, 1}));
   EXPECT_EQ(keeper.bytes(), 0U);
-  // A new receiver replaces the first one at once, and has no slice yet.
+  // A new receiver replaces the first one at once. It has no slice yet.
   keeper.OnAcknowledged(Time{3s}, kOneReceiver + 1, 1, 0);
   EXPECT_TRUE(keeper.Begin(Time{3s}, {3, 0, 1}));
   EXPECT_FALSE(keeper.HasReference());
@@ -137,7 +137,8 @@ TEST(PixelMemory, AveragesTheRangesNearItsMeanAndBeginsAnewBeyond) {
   expect(0, {8'000, 82, 1, 0b10});
   expect(1'020, {8'080, 121, 2, 0b101});
   expect(2'000, {16'000, 82, 1, 0b1011});
-  expect(2'123, {16'492, 533, 2, 0b10111});  // the farthest range that this mean takes in
+  // This is the farthest range that still counts towards the mean of 2 m.
+  expect(2'123, {16'492, 533, 2, 0b10111});
   expect(1'000, {8'000, 82, 1, 0b101111});
   for (int i = 0; i < 20; ++i) pixel.See(1'000, kStep);
   EXPECT_EQ(pixel.mean, 8'000U);
@@ -165,7 +166,7 @@ TEST(BlockStore, CountsAndForgetsTheBlocksOfEachSectorAlone) {
       block->crc = crc++;
       block->pixels.resize(std::size_t{s.beams} * s.columns);
       store.Add(block);
-      store.Add(block);  // comes twice, and counts once
+      store.Add(block);  // The same block counts once.
     }
   EXPECT_EQ(store.size(), 4 * BlockStore::kMostOfSector);
   RangeImage place;
@@ -187,7 +188,7 @@ TEST(ReferenceKeeper, KeysComeInTurnAfterTheIntervalHasChanged) {
   ReferenceKeeper keeper;
   keeper.OnAcknowledged(Time{0s}, kOneReceiver, 0, UINT32_MAX);
   std::uint32_t scan = 0;
-  // The largest number of slices of a scan that stand alone.
+  // Returns the largest number of slices in one scan that do not refer to another slice.
   const auto most_keys = [&](Duration interval) {
     std::uint32_t most = 0;
     for (int i = 0; i < 40; ++i) {
@@ -225,7 +226,8 @@ TEST(Standstill, ForgetsASourceThatBeginsInMoreColumnsThanASensorHasSectors) {
   }
 }
 
-/// The first pixel of a row has no neighbour: the last pixel of the row above has another azimuth.
+/// The first pixel of a row has no neighbour, because the last pixel of the row above has another
+/// azimuth.
 TEST(Standstill, ComparesNoPixelWithTheRowAbove) {
   RangeImage image;
   image.beams = 64;
@@ -243,7 +245,7 @@ TEST(Standstill, ForgetsASourceOfMoreSectorsThanItHasMemoryFor) {
   image.columns = 1'024;
   image.ranges.assign(image.size(), 5'000);
   for (std::size_t i = 0; i < image.size(); i += 2) image.ranges[i] = 9'000;
-  // The limit of 4 million pixels is 64 of these sectors.
+  // The limit is 4 million pixels, which are 64 of these sectors.
   for (const std::uint32_t sectors : {60U, 70U}) {
     Standstill standstill;
     for (image.first_column = 0; image.first_column < sectors; ++image.first_column)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Blocks through a range coder and back, for every coder that there is.
+// Tests that pass blocks through a range encoder and a range decoder. They work with each coder.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -17,7 +17,8 @@ struct CodingCase {
   RangeGrid grid() const { return RangeGrid::ForStep(1e-3 * cells, 1); }
 };
 
-/// An encoder and a decoder for all slices of a test: no slice may change the next.
+/// An encoder and a decoder that code all slices of a test. A slice must not change how the next
+/// slice is coded.
 struct Codec {
   explicit Codec(const SensorModel& model, const codec::IntegerCoder* integers = nullptr)
       : encoder(model, integers), decoder(model, integers) {}
@@ -47,8 +48,8 @@ inline void ExpectRoundTrip(const codec::RangeImage& image, const codec::RangeSe
   }
 }
 
-/// Expects that a block is refused if its mask or payload has a word more than `coder` wrote.
-/// `part` is the header's size of that mask or payload.
+/// Expects that the decoder refuses a block whose mask or payload is one word longer than `coder`
+/// wrote it. `part` is the field of the header with the size of that mask or payload.
 inline void ExpectNoWordBehind(codec::RangeCoder coder, const codec::IntegerCoder* integers,
                                std::uint32_t codec::RangeHeader::*part) {
   const SensorModel model = RoomSensor();
@@ -79,7 +80,7 @@ inline void ExpectNoWordBehind(codec::RangeCoder coder, const codec::IntegerCode
   }
 }
 
-/// Expects that blocks of a room, of several widths, keep their bins.
+/// Expects that blocks of a room decode to the same bins. The blocks have several widths.
 inline void ExpectBinsOfRooms(const CodingCase& c, const codec::IntegerCoder* integers) {
   const SensorModel model = RoomSensor();
   const codec::RangeSettings settings{
@@ -93,7 +94,8 @@ inline void ExpectBinsOfRooms(const CodingCase& c, const codec::IntegerCoder* in
   ExpectRoundTrip(RoomScan(model, 500, 37), settings, &codec);
 }
 
-/// Expects that blocks of noise, which no predictor helps with, keep their bins.
+/// Expects that blocks of noise decode to the same bins. Noise is the hardest case, because no
+/// predictor helps.
 inline void ExpectBinsOfNoise(const CodingCase& c, const codec::IntegerCoder* integers) {
   const SensorModel model = RoomSensor();
   std::mt19937 random(5);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Slices in range geometry, from raw points to raw points, the odd ones above all.
+// Tests slices in range geometry from raw points to raw points, above all unusual slices.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::uint32_t kMaxPoints = 1U << 20;
 
-/// Encodes and decodes. Returns the ranges of the result.
+/// Encodes the image as a slice, decodes the slice, and returns the decoded ranges.
 std::vector<std::uint32_t> CodedRanges(const RangeImage& image, unsigned threads, unsigned effort) {
   const SensorModel model = test::RoomSensor(image.beams);
   const CloudFormat format{test::OrganisedLayout(), image.beams, model};
@@ -30,7 +30,7 @@ std::vector<std::uint32_t> CodedRanges(const RangeImage& image, unsigned threads
   settings.intensity_bits = 5;
   std::vector<std::uint32_t> ranges;
   SliceDecoder decoder(format, kMaxPoints);
-  // The slice is coded twice: the first coding must not change the second one.
+  // The slice is coded twice, because the first coding must not change the second one.
   for (int i = 0; i < 2; ++i) {
     EXPECT_EQ(encoder.Encode(settings, &slice), SliceResult::kEncoded);
     const auto shape = decoder.Decode({slice.bytes.data(), slice.bytes.size()});
@@ -77,7 +77,8 @@ TEST_P(Efforts, KeepTheErrorNextToAReturnAtTenKilometres) {
 }
 
 TEST_P(Efforts, AreTheSameCloudFromAnyNumberOfThreads) {
-  // Two blocks at most; the second block of the second slice begins behind the end of the turn.
+  // The slices have at most two blocks. The second block of the second slice begins after the end
+  // of the turn.
   for (const auto& [first_column, columns] : {std::pair(100U, 128U), std::pair(420U, 192U)}) {
     const RangeImage image = test::RoomScan(test::RoomSensor(128), first_column, columns);
     const auto one = CodedRanges(image, 1, GetParam());
@@ -88,7 +89,7 @@ TEST_P(Efforts, AreTheSameCloudFromAnyNumberOfThreads) {
         EXPECT_EQ(several, one);
         continue;
       }
-      // Each block chooses bins for itself.
+      // Each block chooses its bins independently, so the ranges depend on the number of threads.
       EXPECT_EQ(CodedRanges(image, threads, GetParam()), several);
       for (std::size_t i = 0; i < image.size(); ++i) ASSERT_NEAR(several[i], image.ranges[i], 20);
     }
@@ -104,8 +105,8 @@ TEST_P(Efforts, KeepBinsThatOnlyTheFastCoderCanCount) {
   RangeSettings settings;
   settings.coder = GetParam() > 0 ? RangeCoder::kMixing : RangeCoder::kAdaptive;
   settings.effort = GetParam();
-  // Only the fast coder can count bins of 1 mm. Each coder can count bins of 9 mm, but not the bins
-  // of the finer grid that a choice takes.
+  // Only the fast coder can count bins of 1 mm. Each coder can count bins of 9 mm. The mixing coder
+  // cannot count the finer bins that a choice between bins would need.
   for (const RangeGrid& grid : {RangeGrid(), RangeGrid(1, 9)}) {
     settings.grid = grid;
     bytes.clear();
@@ -125,11 +126,12 @@ TEST_P(Efforts, KeepBinsThatOnlyTheFastCoderCanCount) {
 
 INSTANTIATE_TEST_SUITE_P(All, Efforts, ::testing::Range(0U, EffortControl::kHighest + 1));
 
-/// A way to code a slice. The figures of the slice must be true for each way.
+/// The settings for coding a slice. With each of these settings, the reported figures of the slice
+/// must be true.
 struct Coding {
   unsigned threads;
   unsigned effort;
-  std::uint32_t thinned_to;  // beams out of 64
+  std::uint32_t thinned_to;  // of 64 beams
   double step_m;
   unsigned intensity_bits;
 };
@@ -176,7 +178,7 @@ TEST_P(SliceFigures, AreThoseOfTheDecodedCloud) {
   EXPECT_EQ(quality.error_m, slice.error_m);
   EXPECT_EQ(quality.intensity_bits, coding.intensity_bits);
   EXPECT_EQ(quality.keep_fraction, coding.thinned_to / 64.0);
-  // The next slice has all beams again.
+  // Thin() applies to one slice only, so the next slice has all beams again.
   encoder.Load({raw.data(), raw.size()}, 0, coding.intensity_bits > 0);
   ASSERT_EQ(encoder.Encode({0.2, coding.step_m, coding.intensity_bits}, &slice),
             SliceResult::kEncoded);
@@ -259,7 +261,8 @@ TEST(IntensityScale, HasEvenLevelsOfWhichEachDecodesToTheMeanOfItsIntegers) {
   }
 }
 
-/// Two blocks of a slice. The second begins at `second`, with `bits` of intensity up to `full`.
+/// Returns two blocks of a slice. The second block begins in the column `second`. Its intensities
+/// have `bits` bits and reach up to `full`.
 std::vector<std::uint8_t> TwoBlocks(std::uint32_t second, unsigned bits,
                                     FullScale full = FullScale::kByte) {
   const SensorModel model = test::RoomSensor();
@@ -410,8 +413,9 @@ class HostileSlices : public ::testing::TestWithParam<unsigned> {
   std::vector<std::uint8_t> stream_;
 };
 
-// Damage that passes at effort 0 is in the header: another step of the grid, another first column.
-// The mixing coder finds little damage: that is what the CRC of the payload format is for.
+// At effort 0, the decoder notices all damage except in the header, where another step or another
+// first column is valid. The mixing coder notices little damage; the CRC of the payload format is
+// there for that.
 TEST_P(HostileSlices, GiveACloudWithinLimitsOrNone) {
   SliceDecoder decoder(test::RoomFormat(), test::kHostileMaxPoints);
   const int decoded = test::CountDecodedMutations(stream_, &decoder);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Blocks that refer to others: their bytes, what they need, and what a decoder remembers.
+// Tests blocks that refer to other blocks: their bytes, the blocks that they need, and the blocks
+// that a decoder remembers.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +15,7 @@
 namespace lidar::codec {
 namespace {
 
-/// Two blocks of a room. The second block refers to the first one.
+/// Two blocks that show a room. The second block refers to the first one.
 struct Pair {
   SensorModel model = test::GoldenSensor(16, 256);
   RangeSettings settings;
@@ -35,7 +36,7 @@ struct Pair {
       if (image.ranges[i] != 0) image.ranges[i] += static_cast<std::uint32_t>(i * 7 % 19);
     EXPECT_TRUE(encoder.Encode(image, settings, &dependent, &link));
   }
-  /// Returns true if `bytes` are a block; otherwise `decoder` has the reason.
+  /// Decodes a block. Returns false if `bytes` are no valid block; `decoder` then has the reason.
   bool Decode(const std::vector<std::uint8_t>& bytes, RangeDecoder* decoder,
               BlockStore* store) const {
     ByteReader reader(bytes.data(), bytes.size());
@@ -128,7 +129,7 @@ TEST(SliceLinks, OfDamagedBytesAreNone) {
   EXPECT_FALSE(LinksOf({longer.data(), longer.size()}));
 }
 
-/// A room that is seen again and again with other noise.
+/// Returns scans of the same room. Each scan has different noise.
 std::vector<RangeImage> NoisyScans(int count) {
   std::vector<RangeImage> scans(static_cast<std::size_t>(count),
                                 test::GoldenImage({16, 256, 0, 1, 1}));
@@ -141,8 +142,8 @@ std::vector<RangeImage> NoisyScans(int count) {
   return scans;
 }
 
-/// Bytes of dependent blocks of NoisyScans() at an effort, the largest error [mm] of decoded
-/// ranges, and how many of the blocks have chosen bins.
+/// The results of coding NoisyScans() at one effort: the bytes of the dependent blocks, the largest
+/// error of a decoded range [mm], and the number of blocks with chosen bins.
 struct Repeated {
   std::size_t bytes = 0;
   int error_mm = 0;
@@ -221,8 +222,8 @@ TEST(Temporal, MemoryOfADecoderIsBounded) {
   for (std::uint32_t i = 0; i < 1'000; ++i) add(i, 7);
   const std::size_t most = BlockStore::kMostBytes / sizeof(BlockMemory);
   EXPECT_LE(store.size(), most);
-  EXPECT_GE(store.size(), most - 1);           // blocks without pixels have nearly that size
-  EXPECT_EQ(store.Recall(7, place), nullptr);  // the oldest is gone
+  EXPECT_GE(store.size(), most - 1);           // Blocks without pixels take nearly that size.
+  EXPECT_EQ(store.Recall(7, place), nullptr);  // The oldest block was forgotten.
   place.first_column = 999;
   EXPECT_NE(store.Recall(7, place), nullptr);
 }

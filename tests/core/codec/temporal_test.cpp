@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Slices that refer to others, over links that acknowledge slices, lose them, or return nothing.
+// Tests slices that refer to earlier slices. The simulated links acknowledge slices, lose slices,
+// or return no acknowledgements.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,10 +19,10 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::uint32_t kSlices = 4;
-constexpr std::uint32_t kColumns = 128;  // few, because some tests need many scans
+constexpr std::uint32_t kColumns = 128;  // This is small, because some tests need many scans.
 constexpr std::uint32_t kReceiver = 77;
 
-/// Settings of a run. The link loses the slices for which `loses` returns true.
+/// The settings of a run. If `loses` returns true for a slice, the link loses that slice.
 struct LinkTest {
   unsigned effort = 2;
   unsigned threads = 1;
@@ -31,9 +32,10 @@ struct LinkTest {
   std::function<bool(std::uint32_t scan, std::uint32_t index)> loses = [](auto, auto) {
     return false;
   };
-  /// Scans until the receiver's acknowledgement; without a value it sends none.
+  /// The receiver acknowledges a slice `delay` scans later. Without a value, it sends no
+  /// acknowledgements.
   std::optional<std::uint32_t> delay = 2;
-  /// What a scan shows; by default nothing moves.
+  /// Returns the image of a scan. By default, nothing moves from scan to scan.
   std::function<RangeImage(const SensorModel&, std::uint32_t scan)> scene =
       [](const SensorModel& model, std::uint32_t scan) {
         return test::RoomScan(model, 0, kColumns, scan + 1);
@@ -42,13 +44,13 @@ struct LinkTest {
 
 struct Sent {
   std::size_t bytes = 0;
-  std::size_t plain_bytes = 0;  // by an encoder without references
-  bool is_plain = false;        // equal to those bytes
+  std::size_t plain_bytes = 0;  // the size without references
+  bool is_plain = false;        // has the same bytes as without references
   bool refers = false;
   bool decoded = false;
 };
 
-/// A sensor, an encoder with a keeper, a link and a decoder.
+/// Connects a sensor, an encoder with a reference keeper, a link and a decoder.
 class Loop {
  public:
   explicit Loop(LinkTest test)
@@ -68,7 +70,7 @@ class Loop {
   ReferenceKeeper& keeper() { return keeper_; }
   Time now() const { return Time{100ms * scan_}; }
 
-  /// The slices of the next scan.
+  /// Encodes and sends the next scan, and returns its slices.
   std::vector<Sent> Scan() {
     const RangeImage whole = test_.scene(model_, scan_);
     std::vector<Sent> sent;
@@ -136,7 +138,7 @@ class Loop {
     return sent;
   }
 
-  /// Expects a slice that arrives to decode within the error.
+  /// Decodes a slice that arrived. If it decodes, expects its ranges to be within the error.
   void Check(const RangeImage& image, const std::vector<std::uint8_t>& bytes, Sent* sent) {
     const auto shape = decoder_.Decode({bytes.data(), bytes.size()});
     sent->decoded = shape.has_value();
@@ -219,7 +221,7 @@ TEST(Temporal, SlicesThatArriveDecodeWhateverWasLost) {
   Loop loop(test);
   const auto sent = loop.Scans(30);
   EXPECT_GT(std::count_if(sent.begin(), sent.end(), [](const Sent& s) { return s.refers; }), 60);
-  // The decoder refuses no slice that arrives.
+  // The decoder decodes each slice that arrives.
   LinkTest all;
   all.loses = [](std::uint32_t scan, std::uint32_t index) { return (scan + index) % 3 == 1; };
   Loop steady(all);
@@ -235,7 +237,8 @@ TEST(Temporal, SlicesStandAloneOnceInAKeyInterval) {
   Loop loop(test);
   loop.Scans(15);
   for (std::uint32_t i = 0; i < 2; ++i) {
-    // Ten scans a second: each sector is renewed once, and not all with the same scan.
+    // At ten scans per second, each sector is renewed once in these ten scans. The sectors are not
+    // all renewed in the same scan.
     std::vector<unsigned> alone(kSlices, 0);
     for (int scan = 0; scan < 10; ++scan) {
       const auto sent = loop.Scan();
@@ -246,7 +249,8 @@ TEST(Temporal, SlicesStandAloneOnceInAKeyInterval) {
       }
       EXPECT_LT(now, kSlices);
     }
-    // Slices also stand alone until the renewed slice is acknowledged.
+    // While the renewed slice is not acknowledged yet, the next slices of its sector stand alone,
+    // too.
     for (const unsigned count : alone) EXPECT_TRUE(count >= 1 && count <= 3) << count;
   }
 }
@@ -266,7 +270,7 @@ TEST(Temporal, SlicesAreThePlainOnesWithASecondReceiver) {
     loop.keeper().OnAcknowledged(loop.now(), kReceiver + 1, 0, 0);
     EXPECT_TRUE(AllPlain(loop.Scan())) << scan;
   }
-  // The second receiver is forgotten, and the first one is alone again.
+  // After a while the second receiver is forgotten, so that only the first one is left.
   loop.Scans(25);
   EXPECT_TRUE(AnyRefers(loop.Scans(3)));
 }
@@ -328,7 +332,8 @@ TEST(Temporal, SlicesOfAChangedSceneDoNotReferToTheOldOne) {
   EXPECT_TRUE(AnyRefers(loop.Scans(2)));
   EXPECT_TRUE(AllPlain(loop.Scan())) << "it has changed";
   for (int scan = 0; scan < 2; ++scan) {
-    const auto standing = loop.Scan();  // the receiver has acknowledged nothing of the new scene
+    // The receiver has not acknowledged a slice of the new scene yet.
+    const auto standing = loop.Scan();
     EXPECT_TRUE(AllDecoded(standing));
     for (const Sent& sent : standing) EXPECT_EQ(sent.bytes, sent.plain_bytes + 1) << scan;
   }
@@ -343,7 +348,7 @@ TEST(Temporal, MemoryIsBoundedOverALongRoundTrip) {
   Loop loop(test);
   loop.keeper().OnAcknowledged(loop.now(), kReceiver, 0, 0);
   for (int i = 0; i < 50; ++i) {
-    // Acknowledgements come all the time, and all of them too late.
+    // Acknowledgements arrive all the time, but always too late.
     loop.keeper().OnAcknowledged(loop.now(), kReceiver, 4'000'000, 0);
     const auto sent = loop.Scan();
     EXPECT_TRUE(AllDecoded(sent));

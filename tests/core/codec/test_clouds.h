@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A small sensor and scans of a room by it, for tests of codecs and of their elements.
+// A small sensor and its scans of a room, for the tests of the codecs and of their elements.
 #pragma once
 #include <cmath>
 #include <cstdint>
@@ -24,7 +24,7 @@ inline SensorModel RoomSensor(std::uint32_t beams = 32, std::uint32_t unit_mm = 
   return m;
 }
 
-/// A room of 20 m x 12 m with noisy walls, and a window without returns.
+/// Returns a scan of a room of 20 m x 12 m. The walls are noisy, and a window gives no returns.
 inline codec::RangeImage RoomScan(const SensorModel& model, std::uint32_t first_column = 0,
                                   std::uint32_t columns = 512, std::uint32_t seed = 1) {
   std::mt19937 random(seed);
@@ -53,12 +53,12 @@ inline codec::RangeImage RoomScan(const SensorModel& model, std::uint32_t first_
   return image;
 }
 
-/// x, y, z, intensity, range: 20 bytes a point.
+/// Returns a layout of 20 bytes per point: x, y, z, intensity and range.
 inline codec::CloudLayout OrganisedLayout() {
   return {*PointFields::Parse("x:F32:0,y:F32:4,z:F32:8,intensity:F32:12,range:U32:16"), 20};
 }
 
-/// `image` as it lies in a buffer of OrganisedLayout().
+/// Returns the bytes of `image` in the layout OrganisedLayout().
 inline std::vector<std::uint8_t> RawCloud(const SensorModel& model,
                                           const codec::RangeImage& image) {
   std::vector<std::uint8_t> raw(image.size() * 20);

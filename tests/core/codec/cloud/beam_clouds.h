@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Clouds of sensors whose beams are known, for the tests of beam tables and of the cloud codec.
+// Clouds of sensors with known beams. The tests of the beam tables and of the cloud codec use them.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -10,11 +10,11 @@
 
 namespace lidar::codec::cloud {
 
-/// x, y, z and intensity of each point.
+/// The x, y, z and intensity of each point.
 using PlainPoints = std::vector<std::array<float, 4>>;
 
-/// What a sensor of 16 beams and 450 columns sees of a room. Azimuths are off by up to
-/// `jitter_deg`, and every twentieth pixel has two or three returns.
+/// Returns the points that a sensor of 16 beams and 450 columns measures in a room. Each azimuth
+/// has an error of up to `jitter_deg`. One pixel in twenty has two or three returns.
 inline PlainPoints SpinningScan(double jitter_deg) {
   std::mt19937 random(9);
   PlainPoints points;
@@ -39,8 +39,9 @@ inline PlainPoints SpinningScan(double jitter_deg) {
   return points;
 }
 
-/// What 12 beams of an oscillating mirror see: they bend, a bit more the lower they are, and their
-/// steps vary by 2 % about 0.2 degrees. The scan is turned by `turn_deg`.
+/// Returns the points that 12 beams of an oscillating mirror measure. Each beam traces a bent line,
+/// and the lower beams bend a bit more. The columns are 0.2 degrees apart, give or take 2 %. The
+/// whole scan is turned by `turn_deg`.
 inline PlainPoints BendingScan(double turn_deg) {
   const auto rounded = [](double degrees) { return std::round(100 * degrees) * 0.01 * M_PI / 180; };
   PlainPoints points;
@@ -62,7 +63,7 @@ inline PlainPoints BendingScan(double turn_deg) {
   return points;
 }
 
-/// A cloud as livox_ros_driver2 publishes it, without the tag.
+/// A point of a cloud that livox_ros_driver2 publishes, without the field `tag`.
 struct PathPoint {
   float x, y, z;
   float intensity;
@@ -71,8 +72,9 @@ struct PathPoint {
 };
 using PathCloud = std::vector<PathPoint>;
 
-/// What four lasers see of a room and its sky in a mirror that makes 7.3 turns a scan and tilts up
-/// and down. `shake_deg`: largest error of the directions.
+/// Returns the points that four lasers measure in a room by way of a mirror. The room has no
+/// ceiling, so steep directions give no points. The mirror makes 7.3 turns per scan and tilts up
+/// and down. Each direction has an error of up to `shake_deg`.
 inline PathCloud PathScan(unsigned scan, double shake_deg = 0) {
   constexpr int kFirings = 4'000;
   std::mt19937 random(scan);

@@ -9,7 +9,8 @@
 namespace lidar::codec::cloud {
 namespace {
 
-/// Beams half a degree apart, whose lines start up to `most_um` above or below the origin.
+/// Returns a table of beams that are half a degree apart. The line of each beam starts up to
+/// `most_um` above or below the origin.
 BeamTable UnevenBeams(std::int32_t most_um) {
   std::mt19937 random(1);
   std::uniform_int_distribution<std::int32_t> height_um(-most_um, most_um);
@@ -32,7 +33,7 @@ TEST_P(LocatedBeams, AreTheNearestOfAllAtAnyDistance) {
   const BeamLocator locator(table);
   std::mt19937 random(2);
   std::uniform_real_distribution<float> slope(-0.5F, 0.3F);
-  // Nearer to the sensor, the lines of beams that are far apart in the table cross.
+  // At distances below `nearest_m`, the lines of beams that are not neighbours in the table cross.
   const float nearest_m = 1 + 1e-4F * static_cast<float>(GetParam());
   std::uniform_real_distribution<float> along(nearest_m, 10 * nearest_m);
   for (int i = 0; i < 50'000; ++i) {

@@ -20,7 +20,7 @@
 namespace lidar::codec::cloud {
 namespace {
 
-/// Writes a table, and returns what a decoder reads.
+/// Writes the table, and returns the table that a decoder reads.
 std::optional<BeamTable> ThroughBytes(const BeamTable& table) {
   std::vector<std::uint8_t> bytes;
   ByteWriter writer(&bytes);
@@ -37,7 +37,8 @@ std::optional<BeamTable> ThroughBytes(const BeamTable& table) {
   return read;
 }
 
-/// 64 beams of a sensor whose modules repeat every four beams, each beam a bit off.
+/// Returns 64 beams whose pattern repeats every four beams, as in a sensor of modules. Each beam
+/// deviates a bit from the pattern.
 BeamTable PatternedTable() {
   std::mt19937 random(8);
   BeamTable table;
@@ -75,7 +76,7 @@ TEST(BeamTable, TakesFewBytesForPatterns) {
   }
 }
 
-// The first encoders wrote the beams behind the flags, instead of by CodeBeams().
+// The first encoders did not use CodeBeams(). They wrote the beams as numbers after the flags.
 TEST(BeamTable, ReadsTheBeamsOfTheFirstEncoders) {
   std::vector<std::uint8_t> bytes;
   ByteWriter writer(&bytes);
@@ -85,7 +86,7 @@ TEST(BeamTable, ReadsTheBeamsOfTheFirstEncoders) {
   };
   write(1'024 * BeamTable::kParts);
   write(2);
-  writer.U8(1 | 4);  // beams have heights and sides, and reaches
+  writer.U8(1 | 4);  // The beams have heights, sides and reaches.
   for (const auto& [below, offset, higher, aside, reach] :
        {std::tuple(8'000U, 300U, 600, -50, -500), std::tuple(9'000U, 40'000U, 5, 100, 250)}) {
     write(below);
@@ -143,7 +144,7 @@ TEST(BeamTable, FindsTheBeamsAndColumnsOfASensor) {
   ASSERT_TRUE(again);
   EXPECT_EQ(again->turn, table->turn);
   for (std::uint32_t i = 0; i < 16; ++i) {
-    // 12 millionths of a radian are exact enough, and take few bits.
+    // Beams are rounded to 12 millionths of a radian, which is exact enough and takes few bits.
     EXPECT_EQ(table->beams[i].elevation % 8, 0);
     EXPECT_EQ(table->beams[i].offset % 8, 0);
     EXPECT_EQ(again->beams[i].elevation, table->beams[i].elevation);
@@ -167,7 +168,7 @@ TEST(BeamTable, FindsBeamsThatBend) {
   }
 }
 
-/// The part of a cloud that FindPath() takes.
+/// The directions and the pulses of a cloud, which FindPath() needs.
 struct PathSightings {
   explicit PathSightings(const PathCloud& cloud) {
     for (const PathPoint& p : cloud) {
@@ -197,7 +198,8 @@ TEST(BeamTable, FindsThePathOfBeamsAndWritesIt) {
   EXPECT_EQ(again->rows(), 4U);
 }
 
-/// Most steps of time are 2 % too short, some too long, and nothing is seen for 400 columns.
+/// Most columns follow after a time that is 2 % too short, and some after a time that is too long.
+/// No point is seen for 400 columns.
 TEST(BeamTable, CountsColumnsOfAPathByTheirMeanTimeOverAGap) {
   constexpr double kBegin = 1.7e18;
   constexpr double kFiringNs = 25'000;
@@ -222,7 +224,7 @@ TEST(BeamTable, CountsColumnsOfAPathByTheirMeanTimeOverAGap) {
 }
 
 TEST(BeamTable, RefusesAPathThatDoesNotTurnOrHasTooManyBeams) {
-  // The bytes are columns, beams, flags and rate.
+  // The bytes are the number of columns (three bytes), the number of beams, the flags and the rate.
   const auto read = [](std::uint8_t beams, std::uint8_t rate) {
     const std::vector<std::uint8_t> bytes = {0x80, 0x80, 1, beams, 64, rate};
     ByteReader reader(bytes.data(), bytes.size());
@@ -233,8 +235,9 @@ TEST(BeamTable, RefusesAPathThatDoesNotTurnOrHasTooManyBeams) {
   EXPECT_FALSE(read(17, 2));
 }
 
-/// The beams start at two heights, as an HDL-64's. On the floor each beam is a ring, through which
-/// lines of any height pass.
+/// The upper and the lower beams start at different heights, as in an HDL-64. On the floor, each
+/// beam sees a ring. Lines from any height pass through a ring, so the floor does not show at which
+/// height a beam starts.
 TEST(BeamTable, FindsTheBeamsOverAFlatFloor) {
   std::vector<Sighting> sightings;
   std::mt19937 random(20);

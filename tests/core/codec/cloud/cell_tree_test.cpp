@@ -13,7 +13,7 @@
 namespace lidar::codec::cloud {
 namespace {
 
-/// Points of a floor and of a wall that crosses it, some of them twice.
+/// Returns points of a floor and of a wall that crosses the floor. Some points occur twice.
 std::vector<Point> FloorAndWall(std::size_t count) {
   std::mt19937 random(3);
   const auto metres = [&] { return static_cast<float>(random() % 100'000) * 1e-4F - 5; };
@@ -45,7 +45,7 @@ TEST(CellTree, GivesBackCellsAndCounts) {
     EXPECT_TRUE(decoder.AtEnd());
     EXPECT_EQ(cells.codes, before.codes);
     EXPECT_EQ(cells.counts, before.counts);
-    // A tree with one node or one point more than the limit is refused.
+    // The decoder refuses a tree that has one node or one point more than its limit.
     for (const CellLimits& limits :
          {CellLimits{points.size(), nodes - 1}, CellLimits{points.size() - 1, nodes}}) {
       mixing::BinaryDecoder again({bytes.data(), bytes.size()});
@@ -56,7 +56,8 @@ TEST(CellTree, GivesBackCellsAndCounts) {
 
 class Cover : public ::testing::TestWithParam<decltype(&CoverByOwnCells)> {};
 
-/// Expects that each point has one cell, whose middle is within 5 cm.
+/// Expects that each point belongs to exactly one cell, and that the middle of the cell is at most
+/// 5 cm away from the point.
 void ExpectAllWithinTheError(const std::vector<Point>& points, decltype(&CoverByOwnCells) cover) {
   const CellGrid grid = CellGrid::ForError(0.05);
   EXPECT_LE(grid.error_m(), 0.05);
@@ -87,7 +88,7 @@ TEST_P(Cover, GivesEachPointACellWhoseMiddleIsWithinTheError) {
   ExpectAllWithinTheError(FloorAndWall(3'000), GetParam());
 }
 TEST_P(Cover, DistinguishesAllCellsOfTheDeepestTree) {
-  // The largest tree has 2^21 cells along an axis. These points are 2^20 cells apart.
+  // The largest tree has 2^21 cells along each axis. The two points are 2^20 cells apart.
   const float apart = CellGrid::ForError(0.05).step_m * static_cast<float>(1 << 20);
   for (const std::size_t axis : {0U, 1U, 2U}) {
     Point near{1, 2, 3};

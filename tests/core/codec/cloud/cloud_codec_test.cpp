@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Clouds through CloudEncoder and CloudDecoder.
+// Tests that clouds pass through CloudEncoder and CloudDecoder within the error.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ ByteView BytesOf(const PlainPoints& points) {
   return {reinterpret_cast<const std::uint8_t*>(points.data()), points.size() * 16};
 }
 
-/// A scan of tests/data/lidars, with intensities that follow the order of the points.
+/// Returns a scan of tests/data/lidars. The intensity of a point follows from its index.
 PlainPoints ScanOf(const std::string& sensor) {
   std::ifstream file(LIDARS_FOLDER "/" + sensor + ".pcd", std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(file), {}};
@@ -76,7 +76,8 @@ double BitsPerPoint(const Coded& coded) {
          static_cast<double>(coded.slice.returns);
 }
 
-/// Returns the largest distance from a point of one cloud to the nearest of the other, both ways.
+/// Returns the largest distance between a point of one cloud and the nearest point of the other
+/// cloud. Points of both clouds are tried.
 double LargestDistance(const PlainPoints& points, const XyzCloud& cloud) {
   std::vector<float> xyz;
   for (const auto& p : points) xyz.insert(xyz.end(), p.begin(), p.begin() + 3);
@@ -98,8 +99,8 @@ struct SensorCase {
 };
 class SensorClouds : public ::testing::TestWithParam<SensorCase> {};
 
-// The limits at efforts 1 and 3 are those of blended and of refined models; the other limits are 5
-// % above what the first version of the coder took.
+// At efforts 1 and 3, the limits are those of the blended and the refined models. The other limits
+// are 5 % above the size that the first version of the coder needed.
 TEST_P(SensorClouds, ComeBackWithinTheErrorInFewBits) {
   const SensorCase& c = GetParam();
   const PlainPoints points = ScanOf(c.name);
@@ -123,7 +124,7 @@ TEST_P(SpinningClouds, ComeBackFromTheirBeamsWithAllReturns) {
   const auto [jitter_deg, effort] = GetParam();
   const PlainPoints points = SpinningScan(jitter_deg);
   const Coded coded = RoundTrip(points, {0.02, 0, 8}, effort);
-  EXPECT_EQ(coded.slice.bytes[0], 0x11);  // it has beams
+  EXPECT_EQ(coded.slice.bytes[0], 0x11);  // The slice has a section of beams.
   EXPECT_EQ(coded.cloud.size(), points.size());
   EXPECT_EQ(coded.cloud.intensity.size(), points.size());
   EXPECT_LE(LargestDistance(points, coded.cloud), 0.02 + 1e-5);
@@ -133,19 +134,23 @@ INSTANTIATE_TEST_SUITE_P(All, SpinningClouds,
                          ::testing::Values(std::tuple(0, 1U), std::tuple(0, 3U),
                                            std::tuple(0.1, 0U), std::tuple(0.1, 3U)));
 
-/// How a sensor differs from one whose beams meet at the origin, and fire at even steps.
+/// Describes how a sensor differs from a sensor whose beams start at the origin and fire at equal
+/// steps.
 struct UnevenSensor {
   const char* name;
-  double height_m = 0;      // of the lower half's origin; the upper half's is twice that
-  double side_m = 0;        // distance of beams from the origin, left and right in turn
-  double rounding_deg = 0;  // of azimuths
-  double jitter_deg = 0;    // of all beams of a firing
-  double swing_deg = 0;     // of every fourth beam in every third firing
-  int ahead = 0;            // beams are 0, 1 or 2 times as many firings ahead, in turn
+  // The height at which the lower beams start. The upper beams start at twice this height.
+  double height_m = 0;
+  // The distance of each beam from the origin, alternately to the left and to the right.
+  double side_m = 0;
+  double rounding_deg = 0;  // the step to which azimuths are rounded
+  double jitter_deg = 0;    // the largest error of a firing, common to its beams
+  double swing_deg = 0;     // an error of every fourth beam in every third firing
+  int ahead = 0;            // The beams are 0, 1 or 2 times this many firings ahead, in turn.
 };
 std::ostream& operator<<(std::ostream& out, const UnevenSensor& s) { return out << s.name; }
 
-/// What the sensor sees of a room from 16 beams and 900 firings, 0.39 degrees apart.
+/// Returns the points that the sensor measures in a room: 16 beams and 900 firings, 0.39 degrees
+/// apart.
 PlainPoints UnevenScan(const UnevenSensor& sensor) {
   std::mt19937 random(3);
   PlainPoints points;
@@ -181,7 +186,7 @@ TEST_P(UnevenClouds, ComeBackFromTheirBeamsInFewBits) {
   PlainPoints points = UnevenScan(GetParam());
   std::shuffle(points.begin(), points.end(), std::mt19937(5));
   const Coded coded = RoundTrip(points, {0.02, 0, 0}, 3);
-  EXPECT_EQ(coded.slice.bytes[0], 0x11);  // it has beams
+  EXPECT_EQ(coded.slice.bytes[0], 0x11);  // The slice has a section of beams.
   EXPECT_EQ(coded.cloud.size(), points.size());
   EXPECT_LE(LargestDistance(points, coded.cloud), 0.02 + 1e-5);
   EXPECT_LE(BitsPerPoint(coded), 2.3);
@@ -193,7 +198,8 @@ INSTANTIATE_TEST_SUITE_P(All, UnevenClouds,
                                            UnevenSensor{"Swings", 0, 0, 0.01, 0.03, 0.15, 0}),
                          [](const auto& sensor) { return std::string(sensor.param.name); });
 
-/// Returns the bits a point of clouds that one encoder codes one after the other.
+/// Encodes the clouds one after the other with the same encoder. Returns the bits per point of each
+/// cloud.
 std::vector<double> BitsOfStream(const std::vector<PlainPoints>& clouds) {
   auto encoder = CloudEncoder::Create(PlainLayout());
   std::vector<double> bits;
@@ -225,11 +231,11 @@ TEST_P(UnevenClouds, StayAsSmallAsTheColumnsMove) {
   const auto bits = BitsOfStream({points, Turned(points, 0.4), Turned(points, 7)});
   EXPECT_LE(bits[0], 2.4);
   EXPECT_LE(bits[1], 1.05 * bits[0]);
-  // The gap of 9 degrees without firings has moved by 7 degrees.
+  // The firings leave a gap of 9 degrees. In this cloud, the gap has moved by 7 degrees.
   EXPECT_LE(bits[2], 1.15 * bits[0]);
 }
 
-// Cuts a turn into slices, as lidarenc does.
+// The clouds are sectors of one turn, which is cut into slices as by lidarenc.
 TEST_P(UnevenClouds, KeepTheirBeamsFromSliceToSlice) {
   const PlainPoints points = UnevenScan(GetParam());
   constexpr std::size_t kSlices = 4;
@@ -241,7 +247,8 @@ TEST_P(UnevenClouds, KeepTheirBeamsFromSliceToSlice) {
   for (const double bits : BitsOfStream(slices)) EXPECT_LE(bits, 6);
 }
 
-// A mirror turns back at another angle in each scan.
+// Each scan is turned by another angle, because the mirror turns back at a different angle each
+// time.
 TEST(CloudCodec, KeepsBeamsThatBendFromScanToScan) {
   for (const double bits : BitsOfStream({BendingScan(0), BendingScan(0.07), BendingScan(3)}))
     EXPECT_LE(bits, 1.2);
@@ -259,7 +266,7 @@ PlainPoints PlainOf(const PathCloud& cloud) {
   return points;
 }
 
-/// Encodes clouds of a stream within 2 cm.
+/// Encodes the clouds as a stream, and expects them to decode with an error of at most 2 cm.
 std::vector<EncodedSlice> EncodePaths(const std::vector<PathCloud>& clouds, unsigned effort = 1) {
   auto encoder = CloudEncoder::Create(PathLayout());
   encoder->set_effort(effort);
@@ -299,7 +306,7 @@ TEST(CloudCodec, CodesHowPointsLeaveTheirPath) {
   EXPECT_LE(BitsOf(EncodePaths({cloud})[0]), 0.7 * in_cells);
 }
 
-/// Points in all directions, all with the time 0.
+/// Returns points in all directions. The time of each point is 0.
 PathCloud Noise(unsigned seed, std::size_t points) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> side(-30, 30);
@@ -308,7 +315,8 @@ PathCloud Noise(unsigned seed, std::size_t points) {
   return noise;
 }
 
-// When the encoder finds the path, its search for beams already pauses between clouds.
+// After seven clouds without beams, the encoder searches for beams only now and then. In this state
+// it finds the path.
 TEST(CloudCodec, LosesAPathBetweenCloudsWithoutOne) {
   for (const std::size_t after : {4'000U, 3'000U}) {
     std::vector<PathCloud> clouds;
@@ -373,7 +381,8 @@ TEST(CloudCodec, FindsTheBeamsOfASensorThatTakesTheOthersPlace) {
   EXPECT_LE(bits[2], 1.01 * bits[0]);
 }
 
-// Each change of the sensor makes the encoder search anew, however many changes there were.
+// After each change of the sensor, the encoder searches for the beams again. The number of changes
+// does not matter.
 TEST(CloudCodec, FindsTheBeamsOfSensorsThatTakeTurns) {
   const PlainPoints first = SpinningScan(0);
   const PlainPoints second = UnevenScan({"", 0.1, 0.026, 0.2, 0, 0, 7});
@@ -383,7 +392,8 @@ TEST(CloudCodec, FindsTheBeamsOfSensorsThatTakeTurns) {
   for (const double bits : BitsOfStream(clouds)) EXPECT_LE(bits, 4);
 }
 
-// A sensor on a roof sees mostly the roof. Its few other points are far apart, and on beams.
+// A sensor on a roof sees mostly the roof itself. Its few other points are far away from each
+// other, and lie on beams.
 TEST(CloudCodec, CodesFewFarPointsByTheirBeams) {
   PlainPoints points = SpinningScan(0);
   constexpr float kRoof = 0.2F;
@@ -398,7 +408,8 @@ TEST(CloudCodec, CodesFewFarPointsByTheirBeams) {
   }
   EXPECT_LT(far, points.size() / 4);
   for (const unsigned effort : {0U, 1U, 2U, 3U})
-    EXPECT_EQ(RoundTrip(points, {0.02, 0, 0}, effort).slice.bytes[0], 0x11);  // it has beams
+    // The slice has a section of beams.
+    EXPECT_EQ(RoundTrip(points, {0.02, 0, 0}, effort).slice.bytes[0], 0x11);
   const auto bits = BitsOfStream({points, points});
   EXPECT_LE(bits[0], 1.5);
   EXPECT_NEAR(bits[1], bits[0], 0.01 * bits[0]);
@@ -418,9 +429,9 @@ TEST(CloudCodec, KeepsTheErrorForTwoSensorsInOneCloud) {
 TEST(CloudCodec, LeavesOutOnlyWhatIsNoPoint) {
   PlainPoints points = SpinningScan(0.1);
   const std::size_t count = points.size();
-  points.insert(points.end(), points.begin(), points.begin() + 100);  // twice
-  points.push_back({1e-4F, 0, 0, 1});                                 // at the sensor
-  points.push_back({0, 0, 5, 1});                                     // above it
+  points.insert(points.end(), points.begin(), points.begin() + 100);  // points that occur twice
+  points.push_back({1e-4F, 0, 0, 1});                                 // a point at the sensor
+  points.push_back({0, 0, 5, 1});                                     // a point above the sensor
   const float nothing = std::numeric_limits<float>::quiet_NaN();
   for (int i = 0; i < 10; ++i) points.push_back({0, 0, 0, 1});
   points.push_back({nothing, 1, 1, 1});
@@ -450,7 +461,8 @@ TEST(CloudCodec, GivesBackTheLevelsOfIntensities) {
   }
 }
 
-/// The beams are known from the second cloud on, so points near the sensor are then coded apart.
+/// The encoder knows the beams from the second cloud on. It then codes the points near the sensor
+/// separately.
 TEST(CloudCodec, GivesEachPointItsOwnIntensityWhetherItIsNearOrFar) {
   constexpr double kError = 0.35;
   constexpr float kBorder = 8.5F;  // [m]
@@ -500,7 +512,8 @@ TEST(CloudCodec, HasTheExtentOfItsLongestSide) {
   EXPECT_EQ(encoder->extent_m(), 0);
 }
 
-/// Clouds with and without far points, intensities and beams, coded one after the other.
+/// Clouds with and without far points, intensities and beams pass through the same encoder and
+/// decoder.
 TEST(CloudCodec, KeepsNothingOfTheCloudBefore) {
   const PlainPoints far = {{1e30F, 1, 2, 200}, {1, 2, 3, 100}, {-5e9F, 5e9F, 7, 50}, {4, 4, 4, 9}};
   const PlainPoints near = {{1, 2, 3, 10}, {4, 5, 6, 255}};
@@ -574,7 +587,7 @@ TEST(CloudCodec, CodesFewFurtherReturnsInCellsWhereThatIsFaster) {
   }
   const auto in_cells = [&](unsigned effort) {
     const Coded coded = RoundTrip(points, {0.02, 0, 0}, effort);
-    EXPECT_EQ(coded.slice.bytes[0], 0x11);  // it has beams
+    EXPECT_EQ(coded.slice.bytes[0], 0x11);  // The slice has a section of beams.
     EXPECT_LE(LargestDistance(points, coded.cloud), 0.02 + 1e-5);
     return coded.slice.bytes[2];
   };
@@ -623,7 +636,7 @@ TEST(CloudHeader, IsRefusedWithADepthThatNoEncoderWrites) {
 }
 
 TEST(CloudCodec, TakesCloudsThatCostNextToNothing) {
-  // Many points in one place, and a cube full of them.
+  // One cloud has all its points in the same place. In the other cloud, the points fill a cube.
   const PlainPoints one(1U << 18, {1, 2, 3, 0});
   EXPECT_EQ(RoundTrip(one, {0.02, 0, 0}, 0).cloud.size(), one.size());
   PlainPoints cube;
@@ -650,7 +663,7 @@ TEST(LargeClouds, TakeTenMillionPoints) {
   EXPECT_EQ(decoder.cloud().size(), points.size());
 }
 
-/// Encodes the first 1,500 points, and one far away.
+/// Encodes the first 1,500 of the points and one point that is far away.
 EncodedSlice SliceOf(PlainPoints points) {
   points.resize(1'500);
   points.push_back({1e30F, 1, 2, 3});

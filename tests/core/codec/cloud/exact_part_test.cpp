@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Fields and orders of clouds that decode exactly.
+// Tests the fields, and the order of points, that must decode exactly.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::uint32_t kMostDecoded = 1U << 20;
 
-/// Fields that must decode exactly, and whether the order must.
+/// Names the fields that must decode exactly, and says whether the order of points must be kept.
 struct Wish {
   std::vector<std::string> fields;
   bool keeps_order = true;
@@ -108,7 +108,8 @@ double Distance(const Point& a, const Point& b) {
   return std::sqrt(square);
 }
 
-/// Expects that every point decodes at its place, with its fields.
+/// Expects that each point decodes at its index, with its position and with the values of the
+/// fields of `wish`.
 void ExpectSame(const Cloud& cloud, const Wish& wish, const Cloud& decoded) {
   ASSERT_EQ(decoded.size(), cloud.size());
   for (std::size_t i = 0; i < cloud.size(); ++i) {
@@ -120,7 +121,7 @@ void ExpectSame(const Cloud& cloud, const Wish& wish, const Cloud& decoded) {
   }
 }
 
-/// A scan of a VLP-16 as Nebula publishes it.
+/// Returns a scan of a VLP-16 in the format in which Nebula publishes it.
 Cloud VelodyneScan() {
   std::ifstream file(LIDARS_FOLDER "/vlp16.pcd", std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(file), {}};
@@ -146,8 +147,8 @@ TEST_P(ExactEfforts, KeepRingTimeAndOrderOfAVelodyne) {
 }
 INSTANTIATE_TEST_SUITE_P(All, ExactEfforts, ::testing::Values(0U, 1U, 3U));
 
-/// What a sensor of 16 beams sees of a room, firing by firing, with some second returns, and a
-/// point too far for cells.
+/// Returns the points that a sensor of 16 beams measures in a room, ordered by firing. Some beams
+/// have two returns. The last point is too far away for a cell.
 Cloud SpinningScan() {
   std::vector<Point> points;
   std::vector<std::pair<int, int>> shots;
@@ -174,7 +175,7 @@ Cloud SpinningScan() {
     const auto [firing, beam] = shots[i];
     cloud.Set(i, "ring", static_cast<std::uint16_t>(beam));
     cloud.Set(i, "time", static_cast<float>(1e-6 * (166 * firing + 2.304 * beam)));
-    // A time that restarts with each packet, plus noise.
+    // The field is a time that restarts with each packet of 24 firings, plus noise.
     const std::uint32_t place = static_cast<std::uint32_t>(firing % 24 * 16 + beam);
     cloud.Set(i, "packet", 10'000 * place + place * 0x9E37'79B1U % 1'000);
   }
@@ -185,7 +186,7 @@ TEST(ExactPart, KeepsWhatADriverSaysOfBeamsFurtherReturnsAndFarPoints) {
   const Cloud cloud = SpinningScan();
   const Wish wish = {{"ring", "time"}, true};
   const auto bytes = Encoded(cloud, wish, 1, 8);
-  EXPECT_EQ(bytes[0], 0x31);  // it has beams, and a section
+  EXPECT_EQ(bytes[0], 0x31);  // The slice has sections of beams and of exact fields.
   const Cloud decoded = Decoded(cloud, wish, bytes);
   ExpectSame(cloud, wish, decoded);
   for (std::size_t i = 0; i < cloud.size(); ++i)
@@ -202,7 +203,7 @@ TEST(ExactPart, TakesFewBitsForRegularFields) {
   EXPECT_LE(BitsPerPoint(cloud, Encoded(cloud, {{}, true})), plain + 0.6);
 }
 
-// The file comes from an earlier encoder.
+// An earlier encoder wrote the file.
 TEST(ExactDecoder, ReadsItsFirstSlicesForEver) {
   std::ifstream file(GOLDEN_CLOUDS_FOLDER "/exact.bin", std::ios::binary);
   const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(file), {}};
@@ -220,7 +221,8 @@ std::vector<Point> RandomPoints(std::size_t count) {
   return points;
 }
 
-// Any bits: not a number, infinities, both zeros, the ends of all types.
+// The fields contain arbitrary bits. Among the values are NaN, infinities, both zeros, and the
+// limits of each type.
 TEST(ExactPart, KeepsAnyNumbersOfAnyTypeInAnyOrder) {
   const std::string types[] = {"I8", "U8", "I16", "U16", "I32", "U32", "F32", "F64"};
   Wish wish;
@@ -271,7 +273,8 @@ TEST(ExactPart, LeavesOutOnlyWhatIsNoPoint) {
   EXPECT_EQ(decoded.Number(2, n), 28U);
 }
 
-// A decoder takes no more numbers than the bytes of a slice may hold.
+// The decoder limits the number of values by the size of the slice. The limit must not refuse
+// values that take nearly no bytes.
 TEST(ExactPart, IsTakenWhereItCostsNextToNothing) {
   const Cloud cloud = CloudOf(std::vector<Point>(1U << 17, Point{1, 2, 3}), "n:U8:12");
   const Wish wish = {{"n"}, false};
@@ -363,7 +366,7 @@ TEST(CloudDecoder, PassesOverWhatComesBackExactly) {
   EXPECT_FALSE(decoder.exact_section().empty());
 }
 
-/// Codes the order of points without beams.
+/// Encodes a section with the order of points, none of which is on a beam.
 std::vector<std::uint8_t> SectionOf(const std::vector<std::uint32_t>& order) {
   PointPlaces places;
   places.AddLoose(order.size());
@@ -395,7 +398,7 @@ TEST(ExactPart, ReadsNoMoreNumbersThanItMay) {
 
 TEST(ExactPart, RefusesAnOrderByAFieldThatItDoesNotHave) {
   auto section = SectionOf({0, 1, 2});
-  constexpr std::size_t kOrderKey = 2;  // behind the flags and the number of fields
+  constexpr std::size_t kOrderKey = 2;  // the offset after the flags and the number of fields
   for (const unsigned key : {0U, 1U, 2U, 255U}) {
     section.at(kOrderKey) = static_cast<std::uint8_t>(key);
     EXPECT_EQ(Decodes(section, 3, 1U << 20), key < 2) << key;
@@ -407,8 +410,8 @@ TEST(ExactPart, RefusesAnOrderThatPutsTwoPointsInOnePlace) {
   EXPECT_FALSE(Decodes(SectionOf({0, 0, 0}), 3, 1U << 20));
 }
 
-// Each place in the order is coded as a step to a long run of taken places. A search from place to
-// place would take minutes.
+// Each place in the order is coded as a step that leads to a long run of places that are already
+// taken. A search that tries one place after the other would take minutes.
 TEST(ExactPart, DecodesAnOrderFullOfStepsBackInTime) {
   constexpr std::uint32_t kPoints = 1U << 19;
   std::vector<std::uint32_t> order(kPoints);

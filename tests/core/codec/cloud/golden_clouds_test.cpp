@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Slices that earlier encoders wrote still give the same clouds.
+// Tests that slices of earlier encoders still decode to the same clouds.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -14,7 +14,7 @@ struct GoldenCloud {
   const char* name;
   std::size_t points;
   std::size_t intensities;
-  std::array<double, 3> sums;  // of x, y and z
+  std::array<double, 3> sums;  // the sums of all x, all y and all z
 };
 std::ostream& operator<<(std::ostream& out, const GoldenCloud& g) { return out << g.name; }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A choice between bins: what it saves, and what it must keep.
+// Tests the choice between bins: that it saves bits, and that it keeps the error.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -33,7 +33,8 @@ std::vector<std::uint8_t> PayloadOf(const SensorModel& model, const RangeImage& 
   return payload;
 }
 
-/// Counts pixels that are gaps in one image only, or differ by more than `error_mm`.
+/// Counts the pixels that are a gap in only one of the images, or whose ranges differ by more than
+/// `error_mm`.
 std::size_t Wrong(const RangeImage& image, const RangeImage& back, std::uint32_t error_mm) {
   std::size_t wrong = 0;
   for (std::size_t i = 0; i < image.size(); ++i) {
@@ -57,7 +58,7 @@ TEST(BinSearch, CostsAreTheSameInAnyOrderOfBins) {
   mixing::Trained().CopyTo(3, 50, 0, model.get());
   mixing::CostMeter meter;
   mixing::RangePart<AllOpinions, mixing::CostMeter> part(model.get(), &meter, 50);
-  // A row under a wall and a pole.
+  // The row above the coded row shows a wall, and then a pole.
   std::vector<mixing::Azimuth> above(24);
   std::vector<std::int32_t> north(24);
   for (std::size_t i = 0; i < above.size(); ++i) {
@@ -119,7 +120,7 @@ TEST(BinSearch, KeepsRangesNextToTheSensorAndFarAway) {
   EXPECT_EQ(Wrong(image, back, kErrorMm), 0U);
 }
 
-/// A bin past the last one would decode within the error, but decoders refuse it.
+/// A bin after the last one would be within the error, but decoders refuse such a bin.
 TEST(BinSearch, KeepsToTheBinsThatDecodersTake) {
   const SensorModel model = test::RoomSensor();
   RangeImage image = test::RoomScan(model, 0, 128);

@@ -65,7 +65,7 @@ TEST(BinaryCoder, TellsWhenItReadsWhatNobodyWrote) {
 TEST(BinaryCoder, ReadsFourBytesThatAreNotThereAndNoMore) {
   BinaryDecoder decoder({});
   EXPECT_FALSE(decoder.overran());
-  decoder.Code(false, 256);  // 1/256: a byte goes
+  decoder.Code(false, 256);  // The bit has the chance 1/256, so the decoder reads another byte.
   EXPECT_TRUE(decoder.overran());
 }
 

@@ -10,7 +10,7 @@
 namespace lidar::codec::mixing {
 namespace {
 
-/// An encoder that only records the chances that it gets.
+/// An encoder that writes nothing and only records the chances that it is given.
 struct Script {
   static constexpr bool kDecodes = false;
   bool Code(bool bit, std::int32_t chance) {
@@ -20,7 +20,7 @@ struct Script {
   std::vector<std::int32_t> chances;
 };
 
-/// What a mixer of some lanes has learnt.
+/// The state that a mixer has learnt.
 template <unsigned kCounters>
 struct Learnt {
   std::array<Counter, 4 * kCounters> counters{};
@@ -39,8 +39,8 @@ struct Learnt {
   }
 };
 
-/// Learns random bits, most of them alike, so that counters reach both ends of their chances.
-/// Weights begin anywhere.
+/// Learns random bits. In each thousand bits, most bits are equal, so that the chances of the
+/// counters reach both limits. The weights start with random values.
 template <class Lanes, unsigned kCounters, unsigned kExtra>
 Learnt<kCounters> Learn(unsigned seed) {
   std::mt19937 random(seed);
@@ -106,14 +106,14 @@ TEST(AChanceMap, LearnsWhatChancesTurnOutToBe) {
     EXPECT_NEAR(map.Refined(logit), Chance(logit), 400) << logit;
   for (int i = 0; i < 4'000; ++i) map.Learn(300, i % 4 == 0);
   EXPECT_NEAR(map.Refined(256), (Chance(256) + 16'384) / 2, 1'500);
-  EXPECT_NEAR(map.Refined(600), Chance(600), 400);  // others stay
+  EXPECT_NEAR(map.Refined(600), Chance(600), 400);  // Other chances stay the same.
   for (int i = 0; i < 4'000; ++i) map.Learn(-2'047, false);
   EXPECT_GE(map.Refined(-2'047), kLeastChance);
 }
 
 TEST(ACounter, LearnsAboutAsTheMeanOfItsBits) {
   Counter counter;
-  EXPECT_EQ(counter.Vote(2'047), 172);  // a new counter has little weight
+  EXPECT_EQ(counter.Vote(2'047), 172);  // A new counter has little weight.
   for (int i = 0; i < 100; ++i) {
     counter.Learn(i % 4 == 0);
     EXPECT_NEAR(counter.rate, 65'536 / (i + 2.64), 0.12 * counter.rate) << i;

@@ -24,7 +24,7 @@ SensorModel Sensor(std::uint32_t beams, std::uint32_t columns, std::uint32_t uni
   return model;
 }
 
-/// A room with a few things in it, gaps, and noise.
+/// Returns an image of a room with some objects, gaps and noise.
 RangeImage Room(std::uint32_t beams, std::uint32_t columns, std::uint32_t unit_mm,
                 std::uint32_t seed) {
   std::mt19937 random(seed);
@@ -64,7 +64,7 @@ class MixingCodec : public testing::TestWithParam<Case> {
   }
 };
 
-/// Decodes what was encoded; fails the test if that is not possible.
+/// Decodes the payload of the image. Fails the test if the payload does not decode.
 RangeImage Decoded(const SensorModel& sensor, const RangeImage& image,
                    const MixingSettings& settings, const std::vector<std::uint8_t>& payload) {
   RangeImage decoded;
@@ -80,7 +80,7 @@ TEST_P(MixingCodec, KeepsMaskBoundAndLevels) {
   const Case& c = GetParam();
   const SensorModel sensor = Sensor(16, 256, c.unit_mm);
   MixingEncoder encoder(sensor);
-  // Whole turns and sectors.
+  // The images are a whole turn and two sectors.
   for (const std::uint32_t columns : {256U, 64U, 1U}) {
     const RangeImage image = Room(16, columns, c.unit_mm, columns);
     std::vector<std::uint8_t> payload;
@@ -117,17 +117,17 @@ TEST(MixingCodecOf, RefinedModelsAreAnotherVersion) {
     EXPECT_TRUE(encoder.Encode(image, settings, &payload));
     return payload;
   };
-  EXPECT_EQ(payload_of(1)[0] >> 4, mixing::kTableVersion);  // effort 1 has no refined models
+  EXPECT_EQ(payload_of(1)[0] >> 4, mixing::kTableVersion);  // Effort 1 has no refined models.
   auto payload = payload_of(2);
   EXPECT_EQ(payload[0] >> 4, mixing::kRefinedVersion);
-  // A decoder refuses refined models at effort 1, and with a memory.
+  // A decoder refuses refined models if there is a memory, or at effort 1.
   MixingDecoder decoder(sensor);
   RangeImage back = image;
   const auto memory = Remember(image, RangeGrid(1, 41), nullptr);
   EXPECT_FALSE(decoder.Decode({payload.data(), payload.size()}, RangeGrid(1, 41), 0, &back,
                               {memory->pixels.data(), &memory->model}));
   EXPECT_TRUE(decoder.Decode({payload.data(), payload.size()}, RangeGrid(1, 41), 0, &back));
-  payload[0] ^= 3;  // to effort 1
+  payload[0] ^= 3;  // sets effort 1
   EXPECT_FALSE(decoder.Decode({payload.data(), payload.size()}, RangeGrid(1, 41), 0, &back));
 }
 
@@ -177,11 +177,11 @@ TEST(MixingCodecOf, RefusesWhatDoesNotFit) {
   EXPECT_TRUE(payload.empty());
 }
 
-/// A payload whose every bit is what the decoder expects, so that it could fill an image of any
-/// size.
+/// Returns a payload in which each bit has the value that the decoder expects. Such bits take
+/// nearly no bytes, so the payload could fill an image of any size.
 std::vector<std::uint8_t> AsExpected(std::size_t bytes) {
   std::vector<std::uint8_t> payload(bytes, 0xFF);
-  payload[0] = mixing::kTableVersion << 4 | 4 | 3;  // the version, gaps, effort 3
+  payload[0] = mixing::kTableVersion << 4 | 4 | 3;  // the version, a flag for gaps, effort 3
   return payload;
 }
 
@@ -193,12 +193,13 @@ TEST(MixingCodecOf, WorkIsBoundedByTheBytes) {
     RangeImage image;
     image.beams = 128;
     const std::size_t most = MostMixedPixels(bytes) / image.beams;
-    // An image with more pixels is refused before memory for it is allocated.
+    // The decoder refuses an image with more pixels before it allocates memory for them.
     image.columns = static_cast<std::uint32_t>(most + 1);
     EXPECT_FALSE(decoder.Decode({payload.data(), bytes}, RangeGrid(1, 41), 0, &image));
     EXPECT_EQ(image.ranges.capacity(), 0U);
   }
-  EXPECT_LE(MostMixedPixels(60), 20'000U);  // of 1,048,576 that a decoder takes by default
+  // These are few of the 1,048,576 pixels that a decoder accepts by default.
+  EXPECT_LE(MostMixedPixels(60), 20'000U);
 }
 
 TEST(MixingCodecOf, AReturnIsNeverAtTheSensor) {
@@ -209,7 +210,7 @@ TEST(MixingCodecOf, AReturnIsNeverAtTheSensor) {
   image.columns = 16;
   for (std::size_t bytes = 2; bytes < 40; ++bytes) {
     auto payload = AsExpected(bytes);
-    payload[0] = mixing::kTableVersion << 4 | 3;  // no gaps: a bin of 0 for each pixel
+    payload[0] = mixing::kTableVersion << 4 | 3;  // Without gaps, each pixel gets the bin 0.
     EXPECT_FALSE(decoder.Decode({payload.data(), bytes}, RangeGrid(1, 1), 0, &image)) << bytes;
   }
 }
@@ -267,12 +268,12 @@ TEST(MixingCodecOf, DamagedPayloadsGiveAnImageOrNothing) {
     damaged[random() % damaged.size()] ^= static_cast<std::uint8_t>(1U << random() % 8);
     accepted += decode(damaged) ? 1 : 0;
   }
-  // The CRC of the unit finds the remaining damage.
+  // The decoder does not notice all damage. The CRC of the payload format finds the rest.
   EXPECT_LT(accepted, 20);
   EXPECT_TRUE(decode(payload));
 }
 
-/// Made of integers only, so that it is the same everywhere.
+/// Returns an image that is computed with integers only, so that it is the same on each machine.
 RangeImage Steps() {
   RangeImage image;
   image.beams = 16;
@@ -288,7 +289,7 @@ RangeImage Steps() {
 }
 
 TEST(MixingFormat, IsTheSameWithEveryCompilerAndProcessor) {
-  // A change of these numbers is another version of the format.
+  // If these numbers change, the format needs a new version.
   const std::array<std::uint32_t, 3> expected = {2'862'675'178, 3'885'110'784, 3'935'255'924};
   MixingEncoder encoder(Sensor(16, 256));
   for (unsigned effort = 1; effort <= 3; ++effort) {
@@ -300,7 +301,7 @@ TEST(MixingFormat, IsTheSameWithEveryCompilerAndProcessor) {
 }
 
 TEST(MixingFormat, IsTheSameWhereNearlyNothingIsNew) {
-  // Spreads and counters come to their limits.
+  // With nearly equal pixels, spreads and counters reach their limits.
   RangeImage wall;
   wall.beams = 16;
   wall.columns = 512;
