@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Whole slices out of the sequence numbers that arrived.
+// Tests which slices are complete, given the sequence numbers of the packets that arrived.
 #include "src/rtp/delivery.h"
 
 #include <gtest/gtest.h>
@@ -9,7 +9,8 @@ namespace {
 
 constexpr std::uint32_t kSsrc = 0x1234;
 
-/// Slices 0, 1, ... of one scan, `packets` packets each, from `seq` on.
+/// Sends the slices 0, 1, ... of one scan. Each slice has `packets` packets. The first packet has
+/// the sequence number `seq`.
 void Send(Delivery* delivery, std::uint16_t seq, std::uint32_t slices, std::uint32_t packets,
           std::uint32_t scan = 7) {
   for (std::uint32_t slice = 0; slice < slices; ++slice)
@@ -26,7 +27,7 @@ using Slices = std::vector<std::uint32_t>;
 
 TEST(Delivery, TellsOfASliceOnceAllOfItHasArrived) {
   Delivery delivery;
-  Send(&delivery, 65'534, 3, 2);  // over the wrap
+  Send(&delivery, 65'534, 3, 2);  // The sequence numbers wrap.
   EXPECT_EQ(Received(&delivery, 65'534, 65'534), Slices{});
   for (int report = 0; report < 2; ++report) EXPECT_EQ(Received(&delivery, 0, 0), Slices{});
   EXPECT_EQ(Received(&delivery, 65'534, 65'535), Slices{0});

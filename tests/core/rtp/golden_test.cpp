@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The slices and counts of a receiver for lost, late, repeated and damaged packets.
+// Compares a receiver's slices and counts with golden files. Packets are lost, late, repeated and
+// damaged.
 #include "src/rtp/delivery.h"
 #include "src/rtp/unit_check.h"
 #include "tests/core/rtp/stream.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The limits of the parts of the RTP format.
+// Tests the limits of each part of the RTP format.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -146,7 +146,8 @@ TEST(UnitCheckLimits, ASliceMayBeAsLongAsTheLimit) {
   }
 }
 
-/// Returns the accounts of a stream that continues `scans` scans later, after `pause`.
+/// Returns the accounts after a stream of three scans that continues after `pause`. Its scan
+/// numbers jump by `scans`.
 ReceiverAccounts AfterJump(std::uint32_t scans, Duration pause, bool clock = true) {
   Receiver receiver(test::kReorder);
   test::SenderOptions options;
@@ -155,7 +156,7 @@ ReceiverAccounts AfterJump(std::uint32_t scans, Duration pause, bool clock = tru
   options.scan_number += scans;
   for (test::Wire& w : test::Sender(options).Scans(3, 3)) {
     w.sent += pause;
-    if (!w.config) packets.push_back(w);  // a config alone would end the pause
+    if (!w.config) packets.push_back(w);  // A config alone would end the pause.
   }
   for (test::Wire& w : packets)
     if (!clock) w.sent = {};
@@ -171,7 +172,8 @@ TEST(ReceiverLimits, AStreamThatWentOnFasterThanAnySensorIsAnother) {
   EXPECT_EQ(AfterJump(25'000, seconds(10)).restarts, 1U);
 }
 
-/// Packets of one whole slice each, sent at the times that a test says.
+/// Streams of several senders. Each packet has a whole slice, and a test says when the packet is
+/// sent.
 class Rivals : public ::testing::Test {
  protected:
   void Push(std::uint32_t ssrc, unsigned packets, int at_ms = 0) {
@@ -185,7 +187,7 @@ class Rivals : public ::testing::Test {
     }
   }
 
-  /// The next slices of a stream do not arrive.
+  /// Leaves out the next `slices` slices of the stream `ssrc`.
   void Miss(std::uint32_t ssrc, unsigned slices) { sent_[ssrc] += slices; }
 
   using milliseconds = std::chrono::milliseconds;
@@ -249,7 +251,8 @@ TEST_F(Rivals, TakeOverOnceTheStreamWasSilentForTheTimeOfAScan) {
   Push(1, 1, 100);
   Push(2, Receiver::kProbation, 200);
   EXPECT_EQ(receiver.ssrc(), 2U);
-  // The silence of stream 2 begins with its own last packet.
+  // Stream 3 does not take over, because stream 2 was silent only since its own last packet, for 10
+  // ms.
   Push(3, Receiver::kProbation, 210);
   EXPECT_EQ(receiver.ssrc(), 2U);
 }
@@ -333,7 +336,7 @@ TEST_F(LedgerLimits, AfterAnOutage64SlicesBeforeItsBeginMayTurnOutToBeSkipped) {
   EXPECT_EQ(after.accounts().slices_skipped, 1U);
 }
 
-/// Returns a slice of one packet that refers to the config `config_id`.
+/// Returns a slice that has one packet and refers to the config `config_id`.
 test::Wire OnePacket(std::uint16_t index, std::uint8_t config_id, int at_ms) {
   test::SenderOptions options;
   options.slice_size = 300;

@@ -35,7 +35,7 @@ TEST_P(EverySize, GivesPacketsThatFitAndJoinToTheSlice) {
     for (std::size_t i = 0; i < packets.size(); ++i) {
       const auto payload = Payload(packets[i], bytes);
       ASSERT_LE(payload.size(), max_payload);
-      // Only the last packet may have room left, and only it has the marker.
+      // All packets but the last one are full. Only the last packet has the marker.
       const bool last = i + 1 == packets.size();
       ASSERT_TRUE(last || payload.size() == max_payload);
       ASSERT_EQ(packets[i].marker, last);
@@ -86,14 +86,15 @@ Unit GoldenUnit() {
   return unit;
 }
 
-/// Returns `size` bytes that count up from `first`.
+/// Returns `size` bytes with the values `first`, `first` + 1, and so on.
 std::vector<std::uint8_t> Count(std::size_t size, std::uint8_t first) {
   std::vector<std::uint8_t> bytes(size);
   std::iota(bytes.begin(), bytes.end(), first);
   return bytes;
 }
 
-// The bytes below were made by tests/system/adversary/wire.py, which follows the document alone.
+// The bytes below were written by tests/system/adversary/wire.py, which implements only the
+// document of the format and shares no code with the project.
 
 TEST(GoldenUnits, AreThoseOfAnotherWriter) {
   const auto bytes = Count(30, 1);
@@ -209,7 +210,7 @@ TEST(ScanCounter, HasNoGapsWhereTheSourceSkipsScansOrRepeatsItsIds) {
   EXPECT_EQ(Placed(&scans, 10, 1, 2).slice.scan_number, 0xFFFF'FFFFU);
   EXPECT_EQ(Placed(&scans, 15, 0, 2).slice.scan_number, 0U);
   EXPECT_EQ(Placed(&scans, 15, 1, 2).slice.scan_number, 0U);
-  EXPECT_EQ(Placed(&scans, 15, 0, 2).slice.scan_number, 1U);  // a source without scan ids
+  EXPECT_EQ(Placed(&scans, 15, 0, 2).slice.scan_number, 1U);  // This source gives no scan ids.
 }
 
 TEST(ScanCounter, ASliceThatComesAgainIsOfTheNextScan) {
@@ -219,21 +220,24 @@ TEST(ScanCounter, ASliceThatComesAgainIsOfTheNextScan) {
   EXPECT_EQ(again.slice.scan_number, 8U);
   EXPECT_EQ(again.unit, UnitType::kSlice);
   EXPECT_EQ(Placed(&scans, 0, 2, 4).slice.scan_number, 8U);
-  const Unit later = Placed(&scans, 0, 2, 4);  // without slice 3, 0 and 1
+  // Slice 3 of the scan before and slices 0 and 1 of this scan are skipped.
+  const Unit later = Placed(&scans, 0, 2, 4);
   EXPECT_EQ(later.slice.scan_number, 9U);
   EXPECT_EQ(later.info.skipped & 0b111U, 0b111U);
 }
 
 TEST(ScanCounter, TellsWhichOfTheSlicesBeforeWereLeftOut) {
   ScanCounter scans(0);
-  EXPECT_EQ(Placed(&scans, 1, 1, 4).unit, UnitType::kSlice);  // the slices before it are unknown
+  EXPECT_EQ(Placed(&scans, 1, 1, 4).unit, UnitType::kSlice);  // Nothing is known of earlier slices.
   EXPECT_EQ(Placed(&scans, 1, 2, 4).unit, UnitType::kSlice);
-  const Unit over_the_end = Placed(&scans, 2, 1, 4);  // without slice 3 and slice 0
+  // Slice 3 of the scan before and slice 0 of this scan are skipped.
+  const Unit over_the_end = Placed(&scans, 2, 1, 4);
   EXPECT_EQ(over_the_end.unit, UnitType::kSliceAfterSkip);
   EXPECT_EQ(over_the_end.info.skipped, 0b11U);
   EXPECT_EQ(Placed(&scans, 2, 2, 4).info.skipped, 0b110U);
   EXPECT_EQ(Placed(&scans, 2, 3, 4).info.skipped, 0b1100U);
-  EXPECT_EQ(Placed(&scans, 9, 0, 4).info.skipped, 0b11000U);  // whole scans have no number
+  // Scans that are skipped as a whole have no number.
+  EXPECT_EQ(Placed(&scans, 9, 0, 4).info.skipped, 0b11000U);
   EXPECT_EQ(Placed(&scans, 9, 3, 4).info.skipped, 0b1100'0011U);
 }
 

@@ -178,7 +178,8 @@ TEST(StreamConfig, IsRefusedWhenAnyPartIsUnusable) {
   };
   EXPECT_TRUE(refused([](StreamConfig* c) { c->fields = "x:F99:0"; }));
   EXPECT_TRUE(refused([](StreamConfig* c) { c->sensor_model[0] = 77; }));
-  EXPECT_TRUE(refused([](StreamConfig* c) { c->sensor_model.clear(); }));  // range needs one
+  // Range geometry needs a sensor model.
+  EXPECT_TRUE(refused([](StreamConfig* c) { c->sensor_model.clear(); }));
   EXPECT_TRUE(refused([](StreamConfig* c) { c->framerate_d = 0; }));
   EXPECT_TRUE(refused([](StreamConfig* c) { c->framerate_n = 0x8000'0000; }));
   EXPECT_TRUE(refused([](StreamConfig* c) { c->geometry = static_cast<Geometry>(2); }));
@@ -207,7 +208,7 @@ TEST(StreamConfig, SaysWhichCoderMadeTheSlices) {
   const auto of_draco = config.Serialise();
   config.coder = Coder::kLidar;
   const auto of_lidar = config.Serialise();
-  EXPECT_EQ(of_draco[1], 0x01);  // as it was when Draco's was the only coder
+  EXPECT_EQ(of_draco[1], 0x01);  // the value from the time when Draco was the only coder
   EXPECT_EQ(of_lidar[1], 0x11);
   EXPECT_EQ(StreamConfig::Parse({of_lidar.data(), of_lidar.size()}), config);
   EXPECT_NE(StreamConfig::Parse({of_draco.data(), of_draco.size()}), config);

@@ -68,7 +68,7 @@ TEST(Stream, GivesBackAllThatWasSaidOfASlice) {
   EXPECT_FALSE(got[1].discont);
 }
 
-// Each packet of three scans is dropped in turn, and only its own slice may be lost.
+// Drops each packet of three scans in turn. Only the slice that the packet belongs to may be lost.
 TEST(Loss, OfAnyOnePacketCostsItsSliceOnly) {
   const auto packets = Sender().Scans(0, 3);
   for (std::size_t drop = 0; drop < packets.size(); ++drop) {
@@ -80,7 +80,8 @@ TEST(Loss, OfAnyOnePacketCostsItsSliceOnly) {
         std::to_string(packets[drop].scan) + "." + std::to_string(packets[drop].index);
     ASSERT_EQ(DeliverAll(&receiver, left), Without(AllSlices(0, 3), {lost})) << drop;
     receiver.Finish();
-    // A loss in the very first slice makes the receiver join after it.
+    // If a packet of the first slice is lost, the receiver joins after that slice and does not
+    // count it.
     if (lost == "0.0") continue;
     ASSERT_EQ(Accounts(receiver), "received 11 lost 1 damaged 0 mismatch 0; scans 2 1 0") << drop;
   }
@@ -137,8 +138,9 @@ TEST(Loss, AgreesWithTheLinkAtEveryRate) {
     std::vector<std::vector<unsigned>> dropped(300, std::vector<unsigned>(4));
     for (const Wire& w : packets) {
       random = random * 1664525U + 1013904223U;
-      // The first slice arrives, so that the receiver joins where the link's count begins. The last
-      // one arrives, so that the losses before it are noticed.
+      // The first slice always arrives, so that the receiver begins to count where the expected
+      // counts begin. The last slice always arrives, so that the receiver notices the losses before
+      // it.
       const bool edge =
           w.config || (w.scan == 0 && w.index == 0) || (w.scan == 299 && w.index == 3);
       if ((random >> 8) % 100 < percent && !edge) {
@@ -173,7 +175,7 @@ TEST(Loss, AgreesWithTheLinkAtEveryRate) {
 TEST(Reordering, ByTwentyPacketsLosesNothing) {
   auto packets = Sender().Scans(0, 20);
   for (std::size_t i = 0; i + 20 < packets.size(); i += 21) {
-    // The packet comes twenty places later, at the time of the packet there.
+    // Moves the packet behind the next 20 packets. It is sent at the time of the last of them.
     Wire late = packets[i];
     late.sent = packets[i + 20].sent;
     packets.erase(packets.begin() + static_cast<std::ptrdiff_t>(i));
@@ -181,12 +183,12 @@ TEST(Reordering, ByTwentyPacketsLosesNothing) {
   }
   Receiver receiver(milliseconds(200));
   auto names = DeliverAll(&receiver, packets);
-  EXPECT_NE(names, AllSlices(0, 20));  // no slice waited for another
+  EXPECT_NE(names, AllSlices(0, 20));  // A slice did not wait for the slices before it.
   auto all = AllSlices(0, 20);
   std::sort(names.begin(), names.end());
   std::sort(all.begin(), all.end());
   receiver.Finish();
-  // The config was moved behind the first slices, which waited for it.
+  // The config was moved, too. The first slices waited for the config.
   EXPECT_EQ(names, all);
   EXPECT_EQ(Accounts(receiver), "received 80 lost 0 damaged 0 mismatch 0; scans 20 0 0");
 }
@@ -225,8 +227,8 @@ TEST(Damage, OfAnyByteOfASliceIsNeverShown) {
       std::find_if(packets.begin(), packets.end(),
                    [](const Wire& w) { return w.scan == 1 && w.index == 1; }) -
       packets.begin());
-  // The damage also hits the first packet's header: a slice with a wrong time is as bad as a wrong
-  // slice.
+  // Each byte of the packet is damaged in turn, the header included, because a slice with a wrong
+  // time is as bad as a slice with wrong contents.
   for (std::size_t byte = 0; byte < packets[victim].payload.size(); ++byte) {
     auto damaged = packets;
     damaged[victim].payload[byte] ^= 0x10;
@@ -263,16 +265,17 @@ TEST(Join, InMidStreamStartsWithTheFirstSliceThatIsWholeAfterAConfig) {
   sender.Config(&packets);
   for (std::uint16_t i = 0; i < 4; ++i) sender.Slice(3, i, &packets);
   for (std::uint16_t i = 0; i < 4; ++i) sender.Slice(4, i, &packets);
-  // Keeps the packets from the second one of slice 1.2 on.
+  // The stream begins with the second packet of slice 1.2.
   const auto from = std::find_if(packets.begin(), packets.end(),
                                  [](const Wire& w) { return w.scan == 1 && w.index == 2; });
   packets.erase(packets.begin(), from + 1);
   Receiver receiver(milliseconds(20));
-  // 2.2 and 2.3 had not been given up when the config came.
+  // When the config arrived, slices 2.2 and 2.3 were still waiting for it. Earlier slices had been
+  // given up.
   EXPECT_EQ(DeliverAll(&receiver, packets),
             (Names{"2.2", "2.3", "3.0", "3.1", "3.2", "3.3", "4.0", "4.1", "4.2", "4.3"}));
   receiver.Finish();
-  // Scan 1 began before the receiver joined, so it is not counted.
+  // Scan 1 is not counted, because it began before the receiver joined.
   EXPECT_EQ(Accounts(receiver), "received 10 lost 0 damaged 0 mismatch 3; scans 2 1 0");
 }
 
@@ -342,7 +345,7 @@ TEST(Config, ThatIsRepeatedIsTheSameObject) {
 }
 
 TEST(Memory, IsBoundedAgainstSlicesThatNeverEnd) {
-  // Middle fragments only, of more slices than may be pending, each 1 kB.
+  // The stream has only middle fragments, one per slice. There are more slices than may be pending.
   Sender sender;
   auto packets = sender.Scans(0, 1);
   Reassembler reassembler(std::chrono::hours(1));

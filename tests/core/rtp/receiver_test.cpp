@@ -51,7 +51,7 @@ TEST(Receiver, FollowsASenderThatRestartsWithTheSameSsrc) {
   EXPECT_EQ(DeliverAll(&receiver, packets), AllSlices(0, 3) + AllSlices(10, 3, 2));
   second.scan_number = 500;
   for (const Wire& w : Sender(second).Scans(20, 3)) DeliverAll(&receiver, {w});
-  // An outage of half a second cannot take a million scans.
+  // No sensor makes a million scans in less than a second, so these are restarts and not outages.
   EXPECT_EQ(receiver.accounts().restarts, 2U);
   EXPECT_EQ(receiver.accounts().slices.slices_lost, 0U);
 }
@@ -60,12 +60,13 @@ TEST(Receiver, DecodesNothingOfARestartedSenderByTheConfigOfTheOneBefore) {
   SenderOptions second;
   second.sequence = 5;
   second.scan_number = 1'000'000;
-  second.config.fields = "x:F32:0,y:F32:4,z:F32:8,range:U32:12";  // and the same id
+  // The config id is the same as before.
+  second.config.fields = "x:F32:0,y:F32:4,z:F32:8,range:U32:12";
   Receiver receiver(milliseconds(100));
   DeliverAll(&receiver, Sender().Scans(0, 3));
   auto packets = Sender(second).Scans(10, 3);
   ASSERT_TRUE(packets.front().config);
-  packets.erase(packets.begin());  // lost
+  packets.erase(packets.begin());  // The config is lost.
   EXPECT_EQ(DeliverAll(&receiver, packets), Names{});
   std::vector<Wire> config;
   Sender(second).Config(&config);
@@ -82,7 +83,8 @@ TEST(Receiver, FollowsASenderThatRestartsWithTheSameSsrcWithoutAPause) {
   second.scan_number = 500;
   Receiver receiver(milliseconds(100));
   DeliverAll(&receiver, Sender(first).Scans(0, 3));
-  // A stream is followed after three packets, its probation: before its first scan is over.
+  // The receiver follows a stream after a probation of three packets, which is less than its first
+  // scan.
   EXPECT_EQ(DeliverAll(&receiver, Sender(second).Scans(3, 1)), AllSlices(3, 1));
   EXPECT_EQ(receiver.accounts().restarts, 1U);
 }
@@ -94,7 +96,7 @@ TEST_P(Outage, CountsEveryScanOfItOnceWhereverItBeginsAndEnds) {
   for (std::uint32_t cut = 0; cut < 4; ++cut) {
     std::vector<Wire> through;
     for (const Wire& w : all) {
-      // The link is down from slice 5.cut to slice (5 + scans).cut.
+      // The link is down from slice `cut` of scan 5 until slice `cut` of scan 5 + `scans`.
       const std::uint32_t at = w.scan * 4 + w.index;
       if (w.config || at < 5 * 4 + cut || at >= (5 + scans) * 4 + cut) through.push_back(w);
     }
@@ -104,11 +106,12 @@ TEST_P(Outage, CountsEveryScanOfItOnceWhereverItBeginsAndEnds) {
     const auto a = receiver.accounts();
     EXPECT_EQ(a.slices.slices_lost, scans * 4) << cut;
     EXPECT_EQ(a.slices.slices_received, 40U) << cut;
-    // A cut within a scan leaves two scans incomplete, so one scan less is lost as a whole.
+    // If the outage begins and ends within a scan, two scans are incomplete. One scan less is then
+    // lost as a whole.
     EXPECT_EQ(a.slices.scans_incomplete, cut == 0 ? 0U : 2U) << cut;
     EXPECT_EQ(a.slices.scans_lost, cut == 0 ? scans : scans - 1) << cut;
     EXPECT_EQ(a.slices.scans_complete, cut == 0 ? 10U : 9U) << cut;
-    // Jumps of up to two scans are within the stream.
+    // If scan numbers jump by two scans or less, the receiver counts no outage.
     EXPECT_EQ(a.outages, scans + (cut == 0 ? 1 : 0) > 2 ? 1U : 0U);
     EXPECT_EQ(a.restarts, 0U);
   }
@@ -125,7 +128,7 @@ TEST(Receiver, KeepsAllItsCountsThroughOutagesAndRestarts) {
   Receiver receiver(milliseconds(100));
   ReceiverAccounts last;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    if (all[i].scan >= 10 && all[i].scan < 30) continue;  // an outage
+    if (all[i].scan >= 10 && all[i].scan < 30) continue;  // This is an outage.
     const bool repeats = i % 10 == 3;
     for (int times = repeats ? 2 : 1; times > 0; --times) Deliver(&receiver, all[i]);
     const ReceiverAccounts now = receiver.accounts();
@@ -144,7 +147,7 @@ TEST(Receiver, KeepsAllItsCountsThroughOutagesAndRestarts) {
 
 TEST(Receiver, GivesOutSlicesThatComeAloneAndFarApart) {
   SenderOptions options;
-  options.slice_size = 1'500;  // two packets
+  options.slice_size = 1'500;  // Each slice has two packets.
   std::vector<Wire> through;
   for (const Wire& w : Sender(options).Scans(0, 60))
     if (w.config || (w.scan % 10 == 5 && w.index == 2)) through.push_back(w);
@@ -153,14 +156,15 @@ TEST(Receiver, GivesOutSlicesThatComeAloneAndFarApart) {
             (Names{"5.2", "15.2", "25.2", "35.2", "45.2", "55.2"}));
   receiver.Finish();
   const auto a = receiver.accounts();
-  EXPECT_EQ(a.slices.slices_lost, 5 * 39U);  // between the first and the last
+  // These are the slices between the first and the last one.
+  EXPECT_EQ(a.slices.slices_lost, 5 * 39U);
   EXPECT_EQ(a.packets.invalid, 0U);
   EXPECT_EQ(a.outages, 5U);
   EXPECT_EQ(a.restarts, 0U);
 }
 
 TEST(Receiver, GivesOutSlicesFromFarApartThatComeAllAtOnce) {
-  // Packets wait, as if a link had no capacity until 1.5 s.
+  // Packets wait at the sender until 1.5 s, as behind a link without capacity.
   SenderOptions options;
   options.slice_size = 1'500;
   std::vector<Wire> through;
@@ -195,7 +199,7 @@ TEST(Receiver, IsNotMovedByADamagedPacketBeforeItsFirstSlice) {
   auto packets = Sender().Scans(0, 10);
   SenderOptions far;
   far.scan_number += 0x4000'0000;
-  Wire wild = Sender(far).Scans(0, 1).back();  // no start of a slice
+  Wire wild = Sender(far).Scans(0, 1).back();  // It does not begin a slice.
   packets.insert(packets.begin() + 1, wild);
   Receiver receiver(milliseconds(100));
   EXPECT_EQ(DeliverAll(&receiver, packets), AllSlices(0, 10));
@@ -208,7 +212,7 @@ TEST(Receiver, IsNotMovedByOnePacketThatClaimsAnotherPlaceOrSsrc) {
   Sender sender(real);
   SenderOptions far;
   far.scan_number = 123'456;
-  far.slice_size = 300;  // whole in one packet
+  far.slice_size = 300;  // One packet has the whole slice.
   SenderOptions foreign;
   foreign.ssrc = 1;
   Sender a(far);
@@ -251,7 +255,8 @@ TEST_P(AnotherStream, IsNotHeldWhileTheStreamGoesOn) {
   foreign.ssrc = 1;
   const auto own = Sender().Scans(0, 60);
   auto other = Sender(foreign).Scans(0, 70);
-  // The end of each slice comes after the begin of the next, so that a slice is always open.
+  // With reordered packets, the end of each slice arrives after the begin of the next slice, so
+  // that there is always an incomplete slice.
   for (std::size_t end = 3; GetParam() && end + 1 < other.size(); end += 3)
     std::swap(other[end], other[end + 1]);
   Receiver receiver(milliseconds(100));
@@ -260,7 +265,8 @@ TEST_P(AnotherStream, IsNotHeldWhileTheStreamGoesOn) {
   for (std::size_t i = own.size(); i < other.size(); ++i)
     for (ReceivedSlice& slice : test::Deliver(&receiver, other[i])) moved.push_back(slice);
   ASSERT_EQ(moved.size(), 41U);
-  EXPECT_EQ(moved.front().info.scan_id, 59U);  // only its end comes after the first stream
+  // Only the end of this slice arrives after the first stream.
+  EXPECT_EQ(moved.front().info.scan_id, 59U);
   EXPECT_TRUE(moved.front().discont);
   EXPECT_FALSE(moved[1].discont);
   receiver.Finish();

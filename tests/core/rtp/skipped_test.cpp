@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Slices and scans that the sender left out are not counted as lost, whatever else happens.
+// Tests that the receiver does not count slices and scans as lost if the sender skipped them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ using test::SenderOptions;
 using test::Wire;
 using Names = std::vector<std::string>;
 
-/// "skipped n lost n; scans complete incomplete lost"
+/// Returns the accounts as "skipped n lost n; scans complete incomplete lost".
 std::string SkipAccounts(const Receiver& r) {
   const SliceAccounts a = r.accounts().slices;
   return "skipped " + std::to_string(a.slices_skipped) + " lost " + std::to_string(a.slices_lost) +
@@ -29,12 +29,13 @@ std::string SkipAccounts(const Receiver& r) {
 TEST(SkippedSlices, AreNotLost) {
   Receiver receiver(kReorder);
   Sender sender;
-  // Each scan lacks slice 2, and slices around the end of each second scan are left out.
+  // The sender skips slice 2 of each scan, slice 3 of the even scans, and slice 0 of the odd scans.
   DeliverAll(&receiver, sender.ScansWithout(20, [](std::uint32_t s, std::uint16_t i) {
     return i == 2 || (s % 2 == 0 && i == 3) || (s % 2 == 1 && i == 0);
   }));
   receiver.Finish();
-  // The last scan ends with the stream. The first slice is where the receiver joins.
+  // The first scan counts from the slice where the receiver joined, and the last scan ends with the
+  // stream.
   EXPECT_EQ(SkipAccounts(receiver), "skipped 40 lost 0; scans 20 0 0");
   EXPECT_EQ(receiver.accounts().slices.slices_received, 40U);
 }
@@ -44,7 +45,7 @@ TEST(SkippedSlices, AreToldFromLostOnesEvenWhereTheNextSliceIsLostToo) {
   Sender sender;
   auto packets = sender.ScansWithout(
       10, [](std::uint32_t s, std::uint16_t i) { return s == 4 && (i == 1 || i == 2); });
-  // Slice 4.3 is the first that names the skipped ones before it.
+  // Slice 4.3 is the first slice that names the skipped slices. It is lost.
   Lose(&packets, [](const Wire& w) { return w.scan == 4 && w.index == 3; });
   DeliverAll(&receiver, packets);
   receiver.Finish();
@@ -57,8 +58,8 @@ TEST(SkippedSlices, AreNotLostWhereTheWordOfThemComesLate) {
   Sender sender;
   auto packets = sender.ScansWithout(
       6, [](std::uint32_t s, std::uint16_t i) { return (s == 2 && i == 3) || (s == 3 && i < 2); });
-  // A sender short of capacity pauses within the slice that names the skipped ones: its last packet
-  // comes when they are overdue.
+  // A sender with too little capacity pauses within the slice that names the skipped slices. Its
+  // last packet arrives when the skipped slices are already overdue.
   const auto told = [](const Wire& w) { return w.scan == 3 && w.index == 2; };
   const auto begun = std::find_if(packets.begin(), packets.end(), told);
   ASSERT_TRUE(told(*(begun + 1)));
@@ -74,14 +75,15 @@ TEST(SkippedSlices, AreNotLostInAnOutage) {
   Sender sender;
   auto packets = sender.ScansWithout(
       20, [](std::uint32_t s, std::uint16_t i) { return s == 11 || (s == 12 && i < 2) || i == 3; });
-  // No packet of scans 5 to 11 arrives. Scan 11 has no number, because no slice of it was sent.
+  // No packet of scans 5 to 11 arrives. Scan 11 has no scan number, because all its slices were
+  // skipped.
   Lose(&packets, [](const Wire& w) { return !w.config && w.scan >= 5 && w.scan <= 11; });
   DeliverAll(&receiver, packets);
   receiver.Finish();
   const auto a = receiver.accounts();
   EXPECT_EQ(a.outages, 1U);
   EXPECT_EQ(a.slices.slices_received, 5U * 3 + 1 + 7 * 3);
-  // Slice 12.2 names the skipped ones of the 64 slices before it.
+  // Slice 12.2 names all skipped slices among the 64 slices before it.
   EXPECT_EQ(a.slices.slices_lost, 6U * 3);
   EXPECT_EQ(a.slices.scans_skipped, 1U);
 }
@@ -91,8 +93,7 @@ TEST(SkippedSlices, AreNotLostWhereTheWordOfThemComesAfterAnOutage) {
   Sender sender;
   auto packets = sender.ScansWithout(
       20, [](std::uint32_t s, std::uint16_t i) { return s == 4 && (i == 1 || i == 2); });
-  // Only one packet arrives of slice 4.3, which names the skipped slices. Then scans 5 to 9 are
-  // lost.
+  // Of slice 4.3, which names the skipped slices, only one packet arrives. Scans 5 to 9 are lost.
   bool first = true;
   Lose(&packets, [&](const Wire& w) {
     if (w.config) return false;
@@ -116,7 +117,7 @@ TEST(SkippedSlices, DoNotInterruptTheStream) {
        sender.ScansWithout(20, [](std::uint32_t, std::uint16_t i) { return i == 1; })) {
     for (const ReceivedSlice& s : test::Deliver(&receiver, w)) disconts += s.discont ? 1U : 0U;
   }
-  EXPECT_EQ(disconts, 1U);  // the first
+  EXPECT_EQ(disconts, 1U);  // This is the first slice of the stream.
 }
 
 TEST(SkippedScans, AreCountedWhateverIsLostBesides) {
@@ -141,7 +142,7 @@ TEST(SkippedScans, AreNoneWhereTheSourceStartsItsNumbersAnew) {
   Sender sender;
   DeliverAll(&receiver, sender.Scans(50, 3));
   SenderOptions again;
-  again.scan_number += 53;  // scans 0, 1, 2 of the source
+  again.scan_number += 53;  // continues the numbers; the source begins with scan id 0
   DeliverAll(&receiver, Sender(again).Scans(0, 3));
   EXPECT_EQ(receiver.accounts().slices.scans_skipped, 0U);
 }
@@ -158,7 +159,7 @@ TEST(SkippedScans, AreNotThoseOfWhichAPartWasLost) {
   EXPECT_EQ(receiver.accounts().slices.scans_skipped, 0U);
 }
 
-/// A slice that claims that all slices before it were left out.
+/// Returns a slice that falsely claims that all slices before it were skipped.
 std::vector<Wire> Liar(Sender* sender, std::uint32_t scan, std::uint16_t index) {
   ScanCounter counter(SenderOptions{}.scan_number + scan - 1);
   Unit before;
@@ -183,7 +184,8 @@ TEST(SkippedSlices, AreNotThoseThatArrivedOrArriveNow) {
   EXPECT_EQ(names, Names{});
   EXPECT_EQ(DeliverAll(&receiver, Liar(&sender, 2, 2)), Names{"2.2"});
   EXPECT_EQ(DeliverAll(&receiver, {begun.back()}), Names{"2.0"});
-  // Slice 2.1 had not arrived, so the false claim about it counts; the other slices stay received.
+  // The claim counts for slice 2.1, because that slice had not arrived. The other slices stay
+  // received.
   EXPECT_EQ(DeliverAll(&receiver, next), Names{});
   std::vector<Wire> last;
   sender.Slice(2, 3, &last);
@@ -197,7 +199,7 @@ TEST(SkippedSlices, OfAWholeScanMakeNoCompleteScan) {
   Receiver receiver(kReorder);
   Sender sender;
   DeliverAll(&receiver, sender.Scans(0, 2));
-  DeliverAll(&receiver, Liar(&sender, 3, 0));  // of all of scan 2, too
+  DeliverAll(&receiver, Liar(&sender, 3, 0));  // The claim includes all of scan 2.
   receiver.Finish();
   EXPECT_EQ(SkipAccounts(receiver), "skipped 4 lost 0; scans 2 1 0");
   EXPECT_EQ(receiver.accounts().slices.scans_skipped, 1U);

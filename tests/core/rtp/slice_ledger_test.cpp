@@ -28,7 +28,7 @@ TEST_F(Ledger, AScanHasOneCountOfSlices) {
   EXPECT_EQ(Admit(1, 5, 8), Admission::kContradiction);
   EXPECT_EQ(Admit(1, 1, 3), Admission::kContradiction);
   EXPECT_EQ(Admit(1, 3, 4), Admission::kOpen);
-  EXPECT_EQ(Admit(2, 5, 8), Admission::kOpen);  // the next scan may have another count
+  EXPECT_EQ(Admit(2, 5, 8), Admission::kOpen);  // The next scan may have another count.
 }
 
 TEST_F(Ledger, AScanHasOneCountAlsoBeforeASliceOfItIsWhole) {
@@ -64,10 +64,10 @@ TEST_F(Ledger, BooksEachScanOnce) {
   for (std::uint32_t i = 0; i < 4; ++i) Receive(1, i);
   EXPECT_EQ(accounts().scans_complete, 1U);
   Receive(2, 0);
-  Receive(4, 0);  // nothing came of scan 3
+  Receive(4, 0);  // Nothing was received of scan 3.
   ledger.Finish();
   EXPECT_EQ(accounts().slices_received, 6U);
-  EXPECT_EQ(accounts().slices_lost, 3U + 4);  // not those behind the newest slice
+  EXPECT_EQ(accounts().slices_lost, 3U + 4);  // Slices after the newest slice do not count.
   EXPECT_EQ(accounts().scans_complete, 1U);
   EXPECT_EQ(accounts().scans_lost, 1U);
 }
@@ -85,7 +85,7 @@ TEST_F(Ledger, ASkippedSliceStaysSkippedIfItsScanBeginsLater) {
 
 TEST_F(Ledger, AScanThatBeginsLateHasItsOwnCountOfSlices) {
   Receive(1, 0, 1);
-  Receive(4, 0);  // scans 2 and 3 have four slices, too, as far as is known
+  Receive(4, 0);  // For now, scans 2 and 3 are assumed to have four slices, too.
   Receive(2, 7, 8);
   Receive(3, 1, 2);
   EXPECT_EQ(Admit(2, 3, 4), Admission::kContradiction);
@@ -96,7 +96,7 @@ TEST_F(Ledger, AScanThatBeginsLateHasItsOwnCountOfSlices) {
   EXPECT_EQ(accounts().scans_incomplete, 2U);
 }
 
-/// A slice may name 64 skipped slices, at worst of 64 scans.
+/// A slice names up to 64 skipped slices. At worst, they belong to 64 scans.
 TEST_F(Ledger, NewsOfAScanAreTakenForSixtyFourScansAndNoLonger) {
   for (const std::int64_t end : {66, 67}) {
     ledger.StartAnew();
@@ -118,14 +118,14 @@ TEST_F(Ledger, NewsOfAScanAreTakenForSixtyFourScansAndNoLonger) {
 
 TEST_F(Ledger, CountsScansThatTheSourceSkippedOnceThoughAScanComesLate) {
   ledger.BookScanId(1, 10);
-  ledger.BookScanId(3, 14);  // one of 11 to 13 is scan 2
+  ledger.BookScanId(3, 14);  // One of the ids 11 to 13 belongs to scan 2.
   EXPECT_EQ(accounts().scans_skipped, 2U);
   ledger.BookScanId(2, 11);
   EXPECT_EQ(accounts().scans_skipped, 2U);
   ledger.BookScanId(4, 15);
   EXPECT_EQ(accounts().scans_skipped, 2U);
   ledger.BookScanId(4, 15);  // a second slice of scan 4
-  ledger.BookScanId(5, 2);   // the source began anew
+  ledger.BookScanId(5, 2);   // The source starts its ids again.
   ledger.BookScanId(6, 4);
   EXPECT_EQ(accounts().scans_skipped, 3U);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A sender of synthetic slices whose packets a test may drop, repeat, damage and reorder.
+// A sender of synthetic slices. A test may drop, repeat, damage and reorder its packets.
 #pragma once
 #include <algorithm>
 #include <deque>
@@ -15,7 +15,7 @@ namespace lidar::rtp::test {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds kReorder{100};  // time that receivers wait for late packets
+constexpr milliseconds kReorder{100};  // the time for which receivers wait for late packets
 
 inline std::vector<std::uint8_t> SliceBytes(std::uint32_t scan, std::uint32_t index,
                                             std::size_t size) {
@@ -40,7 +40,7 @@ inline StreamConfig SmallConfig() {
   return c;
 }
 
-/// One packet on the wire, and what it is a part of.
+/// A packet as it is sent, with the scan and the slice that it belongs to.
 struct Wire {
   std::vector<std::uint8_t> payload;
   std::uint32_t ssrc = 0;
@@ -59,7 +59,7 @@ void Lose(std::vector<Wire>* packets, Predicate lost) {
 
 struct SenderOptions {
   std::uint32_t ssrc = 0x11223344;
-  std::uint16_t sequence = 65'000;  // wraps early
+  std::uint16_t sequence = 65'000;  // This value wraps early.
   std::uint32_t scan_number = 0xFFFF'FFFE;
   std::uint16_t slices = 4;
   std::size_t slice_size = 2'500;
@@ -78,7 +78,8 @@ class Sender {
     unit.config_id = o_.config_id;
     Emit(unit, o_.config.Serialise(), out);
   }
-  /// With `counter`, the slice names the slices before it that were left out.
+  /// Appends the packets of a slice to `out`. With `counter`, the slice names the skipped slices
+  /// before it.
   void Slice(std::uint32_t scan, std::uint16_t index, std::vector<Wire>* out,
              ScanCounter* counter = nullptr) {
     Unit unit;
@@ -89,7 +90,7 @@ class Sender {
     time_ = Time{milliseconds(100 * scan) + milliseconds(100) * index / o_.slices};
     Emit(unit, SliceBytes(scan, index, o_.slice_size), out);
   }
-  /// The config, then `scans` whole scans from `first`.
+  /// Returns the config and `scans` whole scans. The first scan has the id `first`.
   std::vector<Wire> Scans(std::uint32_t first, std::uint32_t scans) {
     std::vector<Wire> out;
     time_ = Time{milliseconds(100 * first)};
@@ -98,7 +99,8 @@ class Sender {
       for (std::uint16_t i = 0; i < o_.slices; ++i) Slice(s, i, &out);
     return out;
   }
-  /// The config, then `scans` scans without the slices that `left_out` names.
+  /// Returns the config and `scans` scans. The slices for which `left_out` returns true are
+  /// skipped.
   template <class LeftOut>
   std::vector<Wire> ScansWithout(std::uint32_t scans, LeftOut&& left_out) {
     std::vector<Wire> out;
@@ -143,7 +145,8 @@ inline std::vector<ReceivedSlice> Deliver(Receiver* receiver, const Wire& w) {
   return receiver->Push(p);
 }
 
-/// "scan.index" of every slice, in the order they came out; each must equal what was sent.
+/// Delivers the packets. Returns the names "scan.index" of the slices in the order in which the
+/// receiver returned them. If the contents of a slice are wrong, its name ends with " differs".
 inline std::vector<std::string> DeliverAll(Receiver* receiver, const std::vector<Wire>& packets,
                                            std::size_t slice_size = SenderOptions{}.slice_size) {
   std::vector<std::string> names;
@@ -157,7 +160,7 @@ inline std::vector<std::string> DeliverAll(Receiver* receiver, const std::vector
   return names;
 }
 
-/// The names of all slices of `scans` scans, in order.
+/// Returns the names of all slices of `scans` scans in order. The first scan is `first`.
 inline std::vector<std::string> AllSlices(std::uint32_t first, std::uint32_t scans,
                                           std::uint32_t slices = SenderOptions{}.slices) {
   std::vector<std::string> names;

@@ -6,7 +6,7 @@
 namespace lidar::rtp {
 namespace {
 
-/// The payloads of one slice in `packets` fragments.
+/// Returns the payloads of a slice that has `packets` fragments.
 std::vector<std::vector<std::uint8_t>> Fragments(std::size_t packets) {
   const std::vector<std::uint8_t> bytes(100 * packets, 42);
   Unit unit;
@@ -30,7 +30,7 @@ ByteView View(const std::vector<std::uint8_t>& bytes) { return {bytes.data(), by
 TEST(UnitCheck, FindsAWholeSliceInOneOrMorePackets) {
   for (std::size_t packets : {1U, 2U, 7U}) {
     UnitCheck check;
-    std::uint16_t seq = 65534;  // wraps
+    std::uint16_t seq = 65534;  // The sequence numbers wrap.
     std::size_t sent = 0;
     for (const auto& payload : Fragments(packets))
       EXPECT_EQ(check.Push(seq++, View(payload)), ++sent == packets);
@@ -107,7 +107,7 @@ TEST(UnitCheck, KeepsNoMoreThanASliceMayHold) {
   unit.length = 10;
   std::vector<std::uint8_t> first;
   WriteHeader(unit, &first);
-  first.insert(first.end(), 50, 0);  // more bytes than unit.length
+  first.insert(first.end(), 50, 0);  // The packet has more bytes than `unit.length`.
   EXPECT_FALSE(check.Push(0, View(first)));
   EXPECT_FALSE(check.Push(1, View(Fragments(2)[1])));
 }
@@ -119,7 +119,7 @@ TEST(UnitCheck, ASliceThatOutgrowsItsLengthIsNone) {
   unit.length = static_cast<std::uint32_t>(bytes.size());
   unit.crc = UnitCrc(unit, View(bytes));
   std::uint16_t seq = 0;
-  // Without the second packet the slice would be whole.
+  // The middle fragment has bytes too many. Without it, the slice would be complete.
   for (const auto& [type, size] :
        {std::pair(PacketType::kFirstFragment, 100), std::pair(PacketType::kMiddleFragment, 100),
         std::pair(PacketType::kLastFragment, 50)}) {
