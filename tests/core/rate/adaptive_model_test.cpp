@@ -30,7 +30,8 @@ double Bytes(const AdaptiveModel& model, const SliceFeatures& slice) {
   return model.Predict(slice, kTwoCentimetres).total();
 }
 
-/// A model that has learned one scan, whose slices had the sizes that it predicted.
+/// Returns a model that has learned one scan. Each slice of the scan had the size that the model
+/// predicted.
 AdaptiveModel Taught() {
   AdaptiveModel model(AdaptiveCoefficients{{}, {{11, -0.5, 0, 0}}});
   for (std::uint32_t i = 0; i < kSlices; ++i) {
@@ -56,7 +57,7 @@ TEST(AdaptiveModel, LearnsNothingFromASliceThatIsLargerThanItsReturnsUncoded) {
 TEST(AdaptiveModel, LearnsNothingFromWhatIsNoMeasure) {
   const SliceFeatures slice = Slice(2, 0);
   SliceFeatures few = slice;
-  few.returns = 63;  // headers are most of its bytes
+  few.returns = 63;  // With so few returns, most bytes of the slice are headers.
   const EncodedSize good{DataSize::Bytes(30'000), 0.02, 1};
   const std::vector<std::pair<SliceFeatures, EncodedSize>> none = {
       {few, {DataSize::Bytes(1'000), 0.02, 1}},
@@ -78,7 +79,7 @@ TEST(AdaptiveModel, GoesOnStraightBeyondTheStepsOfItsTraining) {
   ModeCoefficients fit{{11, -0.5, -0.02, 0}};
   fit.min_x = -2;
   fit.max_x = 4;
-  // The slope is -0.5 - 0.04 x.
+  // The slope of the fit is -0.5 - 0.04 x, which is -0.42 at `min_x` and -0.66 at `max_x`.
   EXPECT_NEAR(fit.GeometryLog2(-5, 0) - fit.GeometryLog2(-2, 0), 3 * 0.42, 1e-9);
   EXPECT_NEAR(fit.GeometryLog2(7, 0) - fit.GeometryLog2(4, 0), -3 * 0.66, 1e-9);
 }
@@ -144,12 +145,12 @@ TEST(AdaptiveModel, TakesNoPartOfASliceForNothingAfterManyMovesOfTheStep) {
   AdaptiveModel model(AdaptiveCoefficients{{}, fit});
   std::mt19937 random(1);
   std::normal_distribution<double> noise(0, 0.1);
-  std::array<double, kSlices> scene{};  // log2 of the sizes of its slices
+  std::array<double, kSlices> scene{};  // the binary logarithm of the size of each slice
   for (std::uint32_t scan = 0; scan < 2000; ++scan) {
     for (std::uint32_t i = 0; i < kSlices; ++i) {
       const SliceFeatures slice = Slice(scan, i);
       scene[i] = 0.98 * scene[i] + noise(random);
-      // Each scan is encoded at one step, and then again at another.
+      // Each slice is encoded with the step of its scan, and then again with a step of 2 cm.
       for (const double step_m : {scan % 20 < 10 ? 0.001 : 0.1, 0.02}) {
         const Settings settings{step_m, kBits, 0};
         const double bytes = (10 / step_m + 1e3) * std::exp2(scene[i]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What docs/rate-control.md promises under "Bad input".
+// Tests the promises of docs/rate-control.md under "Bad input".
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -26,7 +26,7 @@ class BadInput : public ::testing::Test {
     p.limits.coarsest_step_m = 0.04;
     return p;
   }
-  /// Encodes one slice. Returns its decision after a check that it is within limits.
+  /// Encodes one slice, and expects the decision to be within the limits. Returns the decision.
   Decision Play(const SliceFeatures& f) {
     const Decision d = controller_.NextSlice(f);
     EXPECT_GE(d.settings.step_m, 0.001);
@@ -120,7 +120,7 @@ TEST_F(BadInput, OfAbsurdSizesDoesNotPoisonTheModel) {
       controller_.OnEncoded(encoded);
     }
   }
-  // Some scans later all is well again.
+  // After some scans with good input, the controller works as before.
   double last = 0;
   for (std::uint32_t scan = 2000; scan < 2400; ++scan) {
     last = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Bags of ROS 2 in databases as a source of lidar-eval.
+// Tests bags of ROS 2 in SQLite databases as input of lidar-eval.
 #include <gtest/gtest.h>
 #include <sqlite3.h>
 
@@ -22,14 +22,14 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// The tables that rosbag2_storage_sqlite3 makes.
+/// The SQL that rosbag2_storage_sqlite3 uses to create its tables.
 constexpr const char* kTables =
     "CREATE TABLE topics(id INTEGER PRIMARY KEY,name TEXT NOT NULL,type TEXT NOT NULL,"
     "serialization_format TEXT NOT NULL,offered_qos_profiles TEXT NOT NULL);"
     "CREATE TABLE messages(id INTEGER PRIMARY KEY,topic_id INTEGER NOT NULL,"
     "timestamp INTEGER NOT NULL, data BLOB NOT NULL);"
     "CREATE INDEX timestamp_idx ON messages (timestamp ASC);";
-/// Tables with the same names, whose columns have no types.
+/// The SQL for tables with the same names, whose columns have no types.
 constexpr const char* kAnyTables =
     "CREATE TABLE topics(id,name,type,serialization_format);"
     "CREATE TABLE messages(id,topic_id,timestamp,data);";
@@ -47,8 +47,8 @@ class BagDatabaseFile : public test::FolderTest {
  protected:
   ~BagDatabaseFile() override { Close(); }
 
-  /// Copies the open bag and its file that ends with `end`, closes the bag, and sets the path to
-  /// the copy.
+  /// Copies the open bag and the file that SQLite keeps beside it (the name of the bag and `end`),
+  /// as a writer leaves them that dies. Closes the bag and sets the path to the copy.
   void LeaveAsADeadWriter(const std::string& end) {
     const std::string copy = folder_ + "/copy";
     std::filesystem::create_directory(copy);
@@ -76,7 +76,7 @@ class BagDatabaseFile : public test::FolderTest {
     sqlite3_close(database_);
     database_ = nullptr;
   }
-  /// Writes a bag of `clouds` clouds at ten a second.
+  /// Writes a bag of `clouds` clouds, ten per second.
   void WriteBag(const std::string& path, int clouds) {
     Open(path);
     Run(std::string("BEGIN;") + kTables + kPointsTopic);
@@ -96,7 +96,7 @@ class BagDatabaseFile : public test::FolderTest {
   void Replace(const std::string& bytes) const {
     std::ofstream(path_, std::ios::binary | std::ios::trunc) << bytes;
   }
-  /// Returns the error that reading all of `source` throws.
+  /// Reads all scans of `source`, and returns the text of the error that this throws, or "".
   static std::string RefusalOf(const std::string& source) {
     try {
       LoadScans(source, {0});
@@ -224,7 +224,7 @@ TEST_F(BagDatabaseFile, TextInPlaceOfNumbersIsNotLoaded) {
     row.replace(row.find('%'), 1, "printf('%.20000c','t')");
     Run("DELETE FROM messages");
     Run("INSERT INTO messages VALUES(" + row + ")");
-    // Reading the text fails, because its pages lead nowhere.
+    // Damages the pages of the text, so that an attempt to read the text fails.
     std::string bytes = Content();
     std::size_t pages = 0;
     for (std::size_t at = 0; at < bytes.size(); at += 4096)
@@ -301,7 +301,8 @@ TEST_F(BagDatabaseFile, VirtualTablesAreRefused) {
   EXPECT_NE(RefusalOf(path_).find("no such module"), std::string::npos) << RefusalOf(path_);
 }
 
-/// Without a limit, the reader visits each of 60^16 paths through these pages.
+/// Each page points to the next one 60 times, which makes 60^16 paths. A reader without a limit
+/// would visit each path.
 TEST_F(BagDatabaseFile, ASchemaWithoutEndIsRefused) {
   constexpr std::size_t kPage = 512, kPaths = 60, kLevels = 16;
   Open(path_);
@@ -383,15 +384,15 @@ TEST_F(BagDatabaseFile, PagesThatRepeatAreAnError) {
   WriteBag(path_, 200);
   std::string bytes = Content();
   constexpr std::size_t kPage = 4096;
-  constexpr std::size_t kCells = 12;  // offset of an interior page's list of cells
+  constexpr std::size_t kCells = 12;  // the offset of the list of cells in an interior page
   bool changed = false;
   for (std::size_t page = kPage; page + kPage <= bytes.size(); page += kPage) {
-    if (bytes[page] != 5) continue;  // no interior page of a table
+    if (bytes[page] != 5) continue;  // The page is no interior page of a table.
     const auto cell = [&](std::size_t i) {
       const auto* at = reinterpret_cast<const std::uint8_t*>(&bytes[page + kCells + 2 * i]);
       return page + std::size_t{256} * at[0] + at[1];
     };
-    std::memcpy(&bytes[cell(1)], &bytes[cell(0)], 4);  // the same left child
+    std::memcpy(&bytes[cell(1)], &bytes[cell(0)], 4);  // Two cells get the same left child.
     changed = true;
   }
   ASSERT_TRUE(changed);

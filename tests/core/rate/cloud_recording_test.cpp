@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Recordings in MCAP as a source of lidar-eval.
+// Tests MCAP recordings as input of lidar-eval.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -46,7 +46,7 @@ class CloudRecording : public test::FolderTest {
     std::ofstream(path_, std::ios::binary) << file_.substr(0, bytes);
     return path_;
   }
-  /// Returns the error that opening `source` throws.
+  /// Opens `source`, and returns the text of the error that this throws, or "".
   static std::string RefusalOf(const std::string& source) {
     try {
       OpenScans(source, {});
@@ -106,7 +106,7 @@ TEST_F(CloudRecording, StampsBefore1970AreLeftOut) {
   const std::uint16_t points = AddTopic("/points");
   const std::vector<TestPoint> one = {{1, 2, 3, 4}};
   auto message = WritePointCloud2(CloudOf(one, 1));
-  std::memset(&message[4], 0xFF, 4);  // the seconds of the stamp
+  std::memset(&message[4], 0xFF, 4);  // the seconds of the time stamp
   AddMessage(points, milliseconds(1), message);
   AddCloud(points, milliseconds(2000));
   EXPECT_EQ(OpenScans(Write(), {})->Next()->start, Time{} + milliseconds(2000));
@@ -179,7 +179,7 @@ TEST_F(CloudRecording, FilesWithoutCloudsAreRefusedByName) {
   const auto is_named = [this] {
     EXPECT_NE(RefusalOf(path_).find(path_), std::string::npos) << RefusalOf(path_);
   };
-  is_named();  // it does not exist
+  is_named();  // The file does not exist.
   std::ofstream(path_) << "no MCAP at all";
   is_named();
   std::ofstream(path_, std::ios::trunc) << "";

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Laws that hold for any model, target and scene, with a model whose sizes are exact.
+// Tests laws that hold for any model, target and scene. The model of these tests predicts exact
+// sizes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +15,8 @@
 namespace lidar::rate {
 namespace {
 
-/// A return takes a byte at 1 cm, and an eighth of a byte for each bit of its intensity.
+/// A model in which a return takes one byte at a step of 1 cm, and an eighth of a byte for each bit
+/// of its intensity.
 class ExactModel : public SizeModel {
  public:
   PredictedSize Predict(const SliceFeatures& slice, const Settings& settings) const override {
@@ -32,12 +34,12 @@ class ExactModel : public SizeModel {
 };
 
 constexpr std::uint32_t kSlicesOfScan = 4;
-constexpr double kScanBytes = 4'000;  // of the target
+constexpr double kScanBytes = 4'000;  // the target, per scan
 
 ControllerParameters WithoutIntensity() {
   ControllerParameters p;
   p.limits.finest_step_m = 0.001;
-  p.limits.coarsest_step_m = 0.04;  // half a byte a return
+  p.limits.coarsest_step_m = 0.04;  // At this step, a return takes half a byte.
   p.min_intensity_bits = 0;
   return p;
 }
@@ -63,7 +65,8 @@ class Accounts : public ::testing::Test {
 
 TEST_F(Accounts, SayWhatTheTargetGaveLessWhatWasSent) {
   std::mt19937 random(3);
-  std::uniform_real_distribution<double> off(0.99, 1.01);  // too small for a second try
+  // The error is too small for a second try.
+  std::uniform_real_distribution<double> off(0.99, 1.01);
   double given = 0;
   double sent = 0;
   for (std::uint32_t scan = 0; scan < 50; ++scan)
@@ -81,12 +84,13 @@ TEST_F(Accounts, SayWhatTheTargetGaveLessWhatWasSent) {
   EXPECT_NEAR(sent / given, 1, 0.01);
 }
 
-/// The first scans are slightly too large, so that the others begin with a debt.
+/// The first scans are slightly larger than their targets, so that the later scans begin with a
+/// debt.
 TEST_F(Accounts, SayTheSameWhereTheTargetFallsBelowWhatIsNeeded) {
   double given = 0;
   double sent = 0;
   for (std::uint32_t scan = 0; scan < 12; ++scan) {
-    const double target = scan < 2 ? kScanBytes : 500;  // 1,000 bytes are needed
+    const double target = scan < 2 ? kScanBytes : 500;  // A scan needs 1,000 bytes.
     controller_.SetTarget(DataRate::BitsPerSecond(target * 8 * 10));
     for (std::uint32_t i = 0; i < kSlicesOfScan; ++i) {
       const Decision d = controller_.NextSlice(Features(scan, i));
@@ -110,7 +114,7 @@ TEST_F(Accounts, ASecondTryIsForWhatMissesItsBudgetByMuchAndGoesTheRightWay) {
     const Decision d = controller_.NextSlice(Features(scan++, 0, 2'000));
     ASSERT_TRUE(d.budget);
     const auto budget = static_cast<double>(d.budget->bytes());
-    // The slice takes `part` of its budget at this step.
+    // At this step, the size of the slice is `part` of its budget.
     const double step = 0.004;
     const auto again = Encoded(part * budget, step);
     const double tolerance = std::max(0.015 * budget, 0.01 * kScanBytes);
@@ -141,12 +145,12 @@ TEST_F(Accounts, BoundsAreToldAfterAScanWhoseLastSliceWasNotCoded) {
     }
 }
 
-// Bits that change with each scan would make the intensities of a still scene flicker.
+// If the number of bits changed with each scan, the intensities of a still scene would flicker.
 TEST_F(Accounts, IntensityBitsRiseAgainOnlyWithAMargin) {
   ControllerParameters p = WithoutIntensity();
   p.limits.intensity_bits = 8;
   controller_.SetParameters(p);
-  // A scan takes 1,000 bytes, and 250 bytes for each bit.
+  // A scan needs 1,000 bytes, and 250 more bytes for each bit of intensity.
   struct Step {
     double bytes;
     unsigned bits;
@@ -191,7 +195,8 @@ TEST_F(Accounts, WithoutTheLoopEachSliceGetsItsShareWhateverWasSent) {
     }
 }
 
-/// Targets from far below the minimum to far above, for each preference.
+/// The targets rise from far below the minimum to far above it. This is repeated for each
+/// preference.
 TEST(CountersOfScans, AreWhatWasDecided) {
   for (const auto preference :
        {DegradationPreference::kMaintainAccuracy, DegradationPreference::kMaintainFramerate,
@@ -228,7 +233,7 @@ TEST(CountersOfScans, AreWhatWasDecided) {
   }
 }
 
-class BoundsOfRates : public ::testing::TestWithParam<double> {};  // scans a second
+class BoundsOfRates : public ::testing::TestWithParam<double> {};  // scans per second
 INSTANTIATE_TEST_SUITE_P(All, BoundsOfRates, ::testing::Values(5.0, 10.0, 20.0));
 
 TEST_P(BoundsOfRates, AreWhatAScanTakesAtItsLimitsAndAreToldOnce) {
@@ -280,7 +285,7 @@ TEST(ScanPlans, KeepTheIntensityBetweenItsLimitsAtAnyBudget) {
         }
 }
 
-/// A coder that notes its settings, and whose slices have no intensity.
+/// A coder that records its settings. Its slices have no intensity.
 class RangesOnly : public SliceCoder {
  public:
   LoadedSlice loaded() const override { return {1'000, 50, 32, false, 3, "range-plain"}; }
@@ -349,7 +354,8 @@ TEST(DemandTables, BeginAnewWithAnotherNumberOfSlices) {
   }
 }
 
-/// The grid's steps are near each other, so that several are within a tenth of the wanted size.
+/// The steps of the grid are so close to each other that several sizes are within a tenth of the
+/// wanted size.
 TEST(ChosenSteps, AreThoseOfTheNearestSizeThatIsNotFarAbove) {
   AdaptiveCoefficients c;
   c.fallback.step = {10, -0.5, 0, 0};
@@ -374,7 +380,7 @@ TEST(ChosenSteps, AreThoseOfTheNearestSizeThatIsNotFarAbove) {
   }
 }
 
-/// Two coders of one geometry take turns; their coefficients are the same.
+/// Two coders of the same geometry encode in turns. They have the same coefficients.
 TEST(ModesOfOneGeometry, LearnAsASingleOne) {
   const AdaptiveCoefficients c{{}, {{11, -0.5, 0, 0}, -3, 5, 1, {6, 1}, 1}};
   AdaptiveModel single(c);
@@ -423,7 +429,7 @@ TEST(LevelsOfThePaper, AreChosenForXyzOnly) {
   EXPECT_TRUE(any_other);
 }
 
-/// Polynomials that are negative in parts, as fits are far from their samples.
+/// The polynomials are negative in parts, as a fit may be far from its samples.
 TEST(ModelOfThePaper, StaysWithinTheLimitsAndPredictsNoNegativeSize) {
   std::mt19937 random(17);
   std::uniform_real_distribution<double> alpha(-500, 500);

@@ -8,7 +8,8 @@
 namespace lidar::rate {
 namespace {
 
-/// A scan of three slices. `rooms` are the bytes that each slice can take beyond its need.
+/// Returns a table of a scan with three slices. Each slice needs 5 bytes. `rooms` has the bytes
+/// that each slice can use beyond its need.
 DemandTable Table(const std::array<double, 3>& rooms = {10, 20, 60}) {
   DemandTable table;
   std::uint32_t i = 0;
@@ -23,9 +24,9 @@ TEST(DemandTable, SharesASurplusEvenly) {
 }
 
 TEST(DemandTable, GivesOthersWhatASliceCannotUse) {
-  EXPECT_DOUBLE_EQ(Table().EvenShare(0, 40), 15);  // 10, 15, 15
-  EXPECT_DOUBLE_EQ(Table().EvenShare(0, 70), 40);  // 10, 20, 40
-  EXPECT_DOUBLE_EQ(Table().EvenShare(1, 70), 50);  // 20, 50
+  EXPECT_DOUBLE_EQ(Table().EvenShare(0, 40), 15);  // The slices get 10, 15 and 15 bytes.
+  EXPECT_DOUBLE_EQ(Table().EvenShare(0, 70), 40);  // The slices get 10, 20 and 40 bytes.
+  EXPECT_DOUBLE_EQ(Table().EvenShare(1, 70), 50);  // The slices get 20 and 50 bytes.
   EXPECT_DOUBLE_EQ(Table({60, 10, 20}).EvenShare(0, 40), 15) << "in any order";
   EXPECT_DOUBLE_EQ(Table({20, 60, 10}).EvenShare(0, 70), 40) << "in any order";
 }

@@ -25,8 +25,9 @@ struct RangeErrors {
   double mean = 0;
 };
 
-/// Returns the errors of the ranges 0 to `units` - 1 units on a grid with bins of `parts` / 256
-/// units. A bin decodes to the middle of its first and last range, rounded up to a millimetre.
+/// Returns the errors of the ranges from 0 to `units` - 1 units on a grid whose bins have `parts` /
+/// 256 units. A bin decodes to the middle between its first and its last range, rounded up to a
+/// millimetre.
 RangeErrors ErrorsOfRanges(std::int64_t parts, unsigned unit_mm, std::int64_t units) {
   RangeErrors errors;
   for (std::int64_t first = 0; first < units;) {
@@ -96,8 +97,8 @@ TEST(ErrorBound, MeanErrorIsThatOfPointsSpreadEvenly) {
     sum += std::sqrt(x * x + y * y + z * z);
   }
   EXPECT_NEAR(ErrorBound::Xyz().MeanError(1), sum / kPoints, 1e-3);
-  // A bin of five units of 1 mm has errors of 2, 1, 0, 1 and 2 mm; a bin of two units of 2 mm has
-  // errors of 1 mm.
+  // Five units of 1 mm in a bin have errors of 2, 1, 0, 1 and 2 mm. Two units of 2 mm in a bin have
+  // errors of 1 mm each.
   EXPECT_NEAR(ErrorBound::Range(1).MeanError(0.005), 0.0012, 1e-12);
   EXPECT_NEAR(ErrorBound::Range(2).MeanError(0.004), 0.001, 1e-12);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What lidar-train and lidar-eval are made of: sources, targets, measurements.
+// Tests the parts of lidar-train and lidar-eval: sources, targets, measurements.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -56,7 +56,7 @@ TEST_F(Files, KittiCloudsOfOddLengthAreRefused) {
 
 TEST_F(Files, KittiSequencesHaveABeamForEachRiseOfPhasesAndTheMedianPeriod) {
   KittiScan scan;
-  scan.phases = {0.1F, 0.1F, 0.5F, 0.1F, 0.2F, 0.2F};  // equal neighbours are a second return
+  scan.phases = {0.1F, 0.1F, 0.5F, 0.1F, 0.2F, 0.2F};  // equal neighbours mark a second return
   for (std::size_t i = 0; i < scan.phases.size(); ++i)
     scan.points.insert(scan.points.end(), {static_cast<float>(i) + 1, 2, 3, 0.5F});
   for (std::size_t number = 0; number < 4; ++number) WriteKittiScan(folder_, number, scan);
@@ -114,7 +114,8 @@ TEST_F(Files, PcdThatIsCutOffOrOfAnotherKindIsRefused) {
 
 TEST_F(Files, AFolderIsReadInTheOrderOfItsNames) {
   Write("2.bin", Bytes<float>({2, 0, 0, 0}));
-  Write("3.bin", Bytes<float>({3, 0, 0, 0}));  // files are not written in the order of their names
+  // The files are not written in the order of their names.
+  Write("3.bin", Bytes<float>({3, 0, 0, 0}));
   Write("1.bin", Bytes<float>({1, 0, 0, 0}));
   Write("notes.txt", "not a cloud");
   const ScanSet set = LoadScans(folder_, {});
@@ -183,7 +184,8 @@ TEST(MakeTargets, StaysInItsRangeAndMovesAsItsNameSays) {
   for (std::size_t i = 1; i < jump.size(); ++i) EXPECT_EQ(jump[i] == jump[i - 1], i % 10 != 0) << i;
 }
 
-/// Copies of a scan, ten a second; the intensity of the first point has the number of the scan.
+/// A stream of copies of a scan, ten per second. The intensity of the first point is the index of
+/// the copy.
 class Copies final : public ScanStream {
  public:
   explicit Copies(Scan scan, int count = 400)
@@ -297,7 +299,7 @@ TEST(Measure, FindsErrorsBelowTheBoundAndCloseToIt) {
     const double step = codec.Bound(mode).CoarsestStep(0.02);
     const auto m = Measure(set, mode, {step, 0, 0, 4});
     ASSERT_TRUE(m) << name;
-    // Positions are floats, whose steps at 100 m are about 0.01 mm.
+    // Positions are floats. At 100 m, neighbouring floats are about 0.01 mm apart.
     EXPECT_LE(m->errors.max_m, 0.02 + 2e-5) << name;
     EXPECT_GT(m->errors.max_m, 0.018) << name;
     EXPECT_NEAR(m->errors.mean_m, codec.Bound(mode).MeanError(step), 0.0005) << name;

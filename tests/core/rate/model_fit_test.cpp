@@ -12,7 +12,8 @@
 namespace lidar::rate {
 namespace {
 
-/// Samples with the bytes that `size` gives, at random settings as lidar-train draws them.
+/// Returns samples with random settings, drawn as lidar-train draws them. `size` sets the bytes of
+/// each sample.
 template <class Size>
 std::vector<Sample> Samples(std::size_t count, const Size& size) {
   std::mt19937 random(5);
@@ -61,7 +62,8 @@ TEST(FitAdaptive, TakesSizesForProportionalToReturnsThatHardlyVary) {
   const auto samples = Samples(400, [&returns](Sample* s) {
     s->slice.mode = "range-adaptive";
     s->settings.intensity_bits = 0;
-    s->slice.returns = returns = returns == 12'000 ? 15'999 : 12'000;  // less than half a doubling
+    // These counts differ by less than half a doubling.
+    s->slice.returns = returns = returns == 12'000 ? 15'999 : 12'000;
     s->geometry_bytes = s->slice.returns / 1000.0 * 512 * std::sqrt(0.01 / s->settings.step_m);
   });
   const auto fit = FitAdaptive(samples);
@@ -93,7 +95,8 @@ TEST(FitAdaptive, AModeThatIsNotKnownIsTakenForTheOneOfMostSamples) {
 }
 
 TEST(FitAdaptive, MakesModelsThatCanBeReadWhateverTheSamples) {
-  for (const double power : {-2.0, -0.5, 0.0, 1.0, 3.0}) {  // of the bits of intensity
+  // The bytes of the intensity are a power of the number of its bits.
+  for (const double power : {-2.0, -0.5, 0.0, 1.0, 3.0}) {
     const auto samples = Samples(400, [power](Sample* s) {
       s->geometry_bytes = s->slice.returns * std::sqrt(0.01 / s->settings.step_m);
       s->intensity_bytes = s->settings.intensity_bits == 0
@@ -109,7 +112,7 @@ TEST(FitAdaptive, MakesModelsThatCanBeReadWhateverTheSamples) {
   }
 }
 
-/// Predicts one byte for any slice.
+/// A model that predicts one byte for each slice.
 class OneByte : public SizeModel {
  public:
   PredictedSize Predict(const SliceFeatures&, const Settings&) const override { return {1, 0}; }
@@ -120,7 +123,8 @@ class OneByte : public SizeModel {
 TEST(FitErrors, AreTheMeanAndThe95thPercentileWhateverTheirOrder) {
   std::vector<Sample> samples(101);
   for (std::size_t i = 0; i < samples.size(); ++i)
-    samples[i * 37 % 101].geometry_bytes = 1 / (1 + 0.01 * static_cast<double>(i));  // i % too much
+    // One byte is i % too much.
+    samples[i * 37 % 101].geometry_bytes = 1 / (1 + 0.01 * static_cast<double>(i));
   const FitError error = ErrorOf(OneByte(), samples);
   EXPECT_NEAR(error.mean, 0.5, 1e-9);
   EXPECT_NEAR(error.percentile_95, 0.95, 1e-9);
@@ -186,7 +190,7 @@ TEST(AdaptiveModel, TakesTheStepOfTheGridWhoseSizeIsNearestButNotFarAbove) {
   limits.finest_step_m = 0.001;
   limits.step_unit_m = 0.002;
   limits.coarsest_step_m = 0.041;
-  // 1, 3 and 5 mm are 3238, 1870 and 1448 bytes.
+  // At steps of 1, 3 and 5 mm, the slice has 3238, 1870 and 1448 bytes.
   EXPECT_NEAR(model.Choose(slice, 1900, limits).step_m, 0.003, 1e-12);
   EXPECT_NEAR(model.Choose(slice, 1800, limits).step_m, 0.003, 1e-12);
   EXPECT_NEAR(model.Choose(slice, 2700, limits).step_m, 0.003, 1e-12) << "1 mm is 20 % over";
@@ -211,7 +215,7 @@ TEST(PaperModel, ChoosesTheGridPointNearestToTheTarget) {
   EXPECT_NEAR(BitsOfStep(100, s.step_m), 14, 1e-9);
   EXPECT_EQ(s.level, 3U);
   EXPECT_EQ(model.Choose(slice, 13100, limits).level, 9U) << "the highest level";
-  // Steps coarser than the error bound are no choice, however small the target.
+  // A step coarser than the error bound is not chosen, however small the target is.
   limits.coarsest_step_m = StepOfBits(100, 12);
   EXPECT_NEAR(BitsOfStep(100, model.Choose(slice, 1, limits).step_m), 12, 1e-9);
 }

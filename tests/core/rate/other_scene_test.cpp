@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The paper's situation: a model that was trained in the tunnel has to stream the street.
+// Tests the situation of the paper: a model that was trained in the tunnel is used in the street.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -49,7 +49,8 @@ class TrainedInTheTunnel : public ::testing::Test {
 };
 TrainedInTheTunnel::Sets* TrainedInTheTunnel::sets_ = nullptr;
 
-/// Returns the geometric mean of the rate that the error bound needs and the highest useful rate.
+/// Returns the geometric mean of two rates: the rate that the error bound needs, and the highest
+/// rate that is of use.
 double MiddleRate(const ScanSet& set, const TrackOptions& options) {
   const rate::RateBounds bounds = MeasureBounds(set, options);
   return std::sqrt(bounds.min.bits_per_second() * bounds.max.bits_per_second());

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# lidar-train and lidar-eval as a user calls them: output, files, exit codes.
+# Tests lidar-train and lidar-eval as a user calls them: output, files, exit codes.
 set -eu
 train=$(realpath "$1")
 eval=$(realpath "$2")
@@ -10,7 +10,7 @@ cd "$folder"
 scene=synth:os0-32:street:512
 
 fail() { echo "FAILED: $*"; exit 1; }
-refused() {  # a message on standard error, and an exit code that is not zero
+refused() {  # expects a message on standard error, and an exit code other than zero
   if "$@" >out.txt 2>error.txt; then fail "accepted: $*"; fi
   test -s error.txt || test -s out.txt || fail "no message: $*"
 }

@@ -13,7 +13,7 @@
 namespace lidar::rate {
 namespace {
 
-using Targets = std::function<double(std::uint32_t scan)>;  // bit/s
+using Targets = std::function<double(std::uint32_t scan)>;  // the target of a scan in bit/s
 
 struct Scan {
   double budget = 0;
@@ -67,7 +67,8 @@ struct Stream {
     return scan;
   }
 
-  /// Lets the controller run at the minimum bitrate, and returns the minimum that it then reports.
+  /// Runs the controller at its minimum bitrate, and returns the minimum that the controller
+  /// reports afterwards.
   double Minimum() {
     Many(5, [](auto) { return 4e6; });
     for (std::uint32_t i = 5; i < 25; ++i) One(i, controller.bounds().min.bits_per_second());
@@ -92,14 +93,14 @@ double Mean(const std::vector<double>& v) {
 }
 double Percentile95(const std::vector<double>& sorted) { return sorted[sorted.size() * 95 / 100]; }
 
-class Tracking : public ::testing::TestWithParam<std::uint32_t> {  // slices a scan
+class Tracking : public ::testing::TestWithParam<std::uint32_t> {  // slices per scan
  protected:
   static SyntheticCodec::Parameters Codec() {
     SyntheticCodec::Parameters p;
     p.slices = GetParam();
     return p;
   }
-  /// A scene whose minimum bitrate stays where it is.
+  /// Returns a scene whose minimum bitrate does not change.
   static SyntheticCodec::Parameters StandingCodec() {
     SyntheticCodec::Parameters p = Codec();
     p.drift = 0;
@@ -217,7 +218,7 @@ TEST_P(Tracking, ComesBackToEveryScanAtOnceWhenTheTargetDoes) {
 
 class Ramps : public ::testing::TestWithParam<std::tuple<DegradationPreference, std::uint32_t>> {};
 
-/// The target goes down to an eighth of the minimum and up again, 3 % a scan.
+/// The target falls to 7 % of the minimum and rises again, by 3 % per scan.
 TEST_P(Ramps, GoBelowTheMinimumAndComeBackWithoutAJolt) {
   const auto [preference, slices] = GetParam();
   ControllerParameters parameters = Parameters();
@@ -226,7 +227,7 @@ TEST_P(Ramps, GoBelowTheMinimumAndComeBackWithoutAJolt) {
   codec.slices = slices;
   Stream run(codec, parameters);
   const double minimum = run.Minimum();
-  double lead = 0;  // bytes sent before their time
+  double lead = 0;  // bytes that were sent beyond the budgets so far
   double keep = 1;
   std::uint32_t gap = 0;
   for (std::uint32_t i = 0; i < 200; ++i) {
@@ -253,7 +254,8 @@ INSTANTIATE_TEST_SUITE_P(
                                          DegradationPreference::kBalanced),
                        ::testing::Values(1U, 8U)));
 
-/// The run never uses the coarsest step, and the codec's curve is not the model's.
+/// The controller must predict the minimum: the run never uses the coarsest step, and the sizes of
+/// the codec follow another curve than the model.
 TEST_P(Tracking, KnowsTheMinimumWithoutEverHavingBeenThere) {
   Stream run(Codec());
   for (std::uint32_t i = 0; i < 100; ++i) {
@@ -268,8 +270,8 @@ TEST_P(Tracking, KnowsTheMinimumWithoutEverHavingBeenThere) {
   }
 }
 
-/// If a target falls to the minimum while a scan is under way, the minimum must be known before the
-/// next scan begins.
+/// If the target falls to the minimum within a scan, the minimum must be known before the next scan
+/// begins.
 TEST_P(Tracking, TellsTheMinimumAfterTheLastSliceOfEachScan) {
   Stream run(Codec());
   double told = 0;

@@ -11,7 +11,7 @@
 namespace lidar::rate {
 namespace {
 
-/// A coder whose slices take a byte a return at a step of 1 cm, and less at coarser ones.
+/// A coder whose slices take one byte per return at a step of 1 cm, and less at a coarser step.
 class FakeCoder : public SliceCoder {
  public:
   LoadedSlice loaded() const override { return {1'000, 50, rows, true, 3, "fake"}; }
@@ -94,7 +94,7 @@ TEST_F(RateLoopTest, EncodesTwiceWhereTheFirstSizeMissesTheBudgetByMuch) {
   for (std::uint32_t scan = 0; scan < 10; ++scan) Encode(scan, DataRate::BitsPerSecond(80'000));
   coder_.asked.clear();
   Encode(10, DataRate::BitsPerSecond(80'000));
-  EXPECT_EQ(coder_.asked.size(), 1U);  // the model has learnt this coder
+  EXPECT_EQ(coder_.asked.size(), 1U);  // The model has learned the sizes of this coder.
   coder_.asked.clear();
   coder_.bytes_a_return = 3;
   Encode(11, DataRate::BitsPerSecond(80'000));

@@ -6,7 +6,8 @@
 namespace lidar::rate {
 namespace {
 
-/// Geometry that needs 60 bytes, and four bytes for each bit of the intensity: 92 with all eight.
+/// Returns the inputs of a scan whose geometry needs 60 bytes. Each bit of intensity needs four
+/// more bytes, so the scan needs 92 bytes with all eight bits.
 ScanPlanInputs Inputs(double budget, unsigned last_intensity_bits) {
   ScanPlanInputs in;
   in.needed.coarsest = in.needed.finest = 60;
@@ -36,7 +37,7 @@ TEST(ScanPlan, RaisesTheIntensityOnlyWithATenthToSpare) {
 }
 
 TEST(ScanPlan, SkipsOnlyWhenMoreThanATenthOfAScanIsOwed) {
-  ScanPlanInputs in = Inputs(50, 0);  // 60 are needed
+  ScanPlanInputs in = Inputs(50, 0);  // The scan needs 60 bytes.
   in.saved = 5;
   EXPECT_FALSE(PlanScan(in, DegradationPreference::kMaintainAccuracy).skip);
   in.saved = 3;

@@ -8,10 +8,10 @@
 namespace lidar::rate {
 namespace {
 
-constexpr double kGain = 0.3;    // share of an innovation that is added to the drift
-constexpr double kWeight = 0.7;  // share of the drift that is added to a prediction
+constexpr double kGain = 0.3;    // the share of an innovation that is added to the drift
+constexpr double kWeight = 0.7;  // the share of the drift that is added to a prediction
 
-/// A tracker that has seen one scan, whose sectors all were as the model predicted.
+/// Returns a tracker that has observed one scan. Each sector of the scan had the predicted size.
 SliceTracker AfterOneScan(std::uint32_t slices) {
   SliceTracker tracker;
   for (std::uint32_t i = 0; i < slices; ++i) tracker.Observe(i, slices, {1, 0}, 0);
@@ -38,8 +38,8 @@ TEST(SliceTracker, FollowsADriftThatAllSectorsShareWithoutBias) {
   SliceTracker tracker = AfterOneScan(8);
   for (std::uint32_t i = 0; i < 8; ++i)
     tracker.Observe(i, 8, {1, kTrue}, kTrue - tracker.Predict(i, 8)->residual);
-  // The tracker takes the drift's own part out of the errors, so that the drift approaches the
-  // whole change.
+  // The predictions contain a part of the drift, which makes their errors smaller. The tracker adds
+  // this part to the errors again, so that the drift approaches the whole change.
   const double drift = kTrue * (1 - std::pow(1 - kGain, 8));
   EXPECT_NEAR(tracker.Predict(0, 8)->residual, kTrue + kWeight * drift, 1e-9);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Small clouds as messages, for tests of recordings.
+// Small point clouds as messages, for the tests of recordings.
 #pragma once
 #include <vector>
 
