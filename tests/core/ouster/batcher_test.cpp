@@ -12,7 +12,7 @@ namespace {
 
 using Packets = std::vector<std::vector<std::uint8_t>>;
 
-/// Three consecutive scans of an OS1-128, 64 packets each.
+/// Three consecutive scans of an OS1-128, with 64 packets per scan.
 class Batcher : public ::testing::Test {
  protected:
   static constexpr std::size_t kPacketsPerScan = 64;
@@ -74,7 +74,7 @@ TEST_F(Batcher, GivesEverySliceOnceAndInOrder) {
 TEST_F(Batcher, TakesNoTimeFromColumnsThatTheSensorMarksAsInvalid) {
   const auto whole = Run(packets_);
   auto packets = packets_;
-  test::Invalidate(metadata_.format, 0, &packets[8]);  // the first column of the second slice
+  test::Invalidate(metadata_.format, 0, &packets[8]);  // the first column of slice 1
   for (std::size_t p = 16; p < 24; ++p)                // all of the third slice
     for (std::uint32_t c = 0; c < 16; ++c) test::Invalidate(metadata_.format, c, &packets[p]);
   const auto slices = Run(packets);
@@ -109,7 +109,8 @@ TEST_F(Batcher, PutsReorderedAndDuplicatedPacketsRight) {
 
 TEST_F(Batcher, DuplicatesDoNotShortenTheWaitForAPacketThatIsUnderWay) {
   Packets repeated = packets_;
-  std::swap(repeated[7], repeated[8]);  // the last packet of a slice comes after the next slice's
+  // The last packet of slice 0 comes after the first packet of slice 1.
+  std::swap(repeated[7], repeated[8]);
   repeated.insert(repeated.begin() + 8, 4, Packets::value_type(repeated[7]));
   const auto straight = Run(packets_);
   ExpectSamePoints(Run(repeated), straight);
@@ -129,7 +130,8 @@ TEST_F(Batcher, ASliceWaitsForTheOneBeforeOfWhichNothingCameYet) {
 
 TEST_F(Batcher, FillsLostColumnsWithMissingReturnsAndCountsTheirPackets) {
   Packets lossy = packets_;
-  lossy.erase(lossy.begin() + 83);  // columns 304 to 319 of the second scan: slice 2
+  // The packet has the columns 304 to 319 of the second scan, which belong to slice 2.
+  lossy.erase(lossy.begin() + 83);
   const auto whole = Run(packets_);
   const auto slices = Run(lossy);
   ASSERT_EQ(slices.size(), 24U);
@@ -150,7 +152,7 @@ TEST_F(Batcher, FillsLostColumnsWithMissingReturnsAndCountsTheirPackets) {
 
 TEST_F(Batcher, GivesASliceWithItsLastPacketAlsoWhereTheOneBeforeIsMissing) {
   Packets lossy = packets_;
-  lossy.erase(lossy.begin() + 16, lossy.begin() + 24);  // slice 2
+  lossy.erase(lossy.begin() + 16, lossy.begin() + 24);  // all packets of slice 2
   std::string error;
   ScanBatcher batcher(metadata_, *PointWriter::Create(metadata_, {}, &error), {8, 4});
   for (std::size_t i = 0; i < 32; ++i) {
@@ -161,7 +163,7 @@ TEST_F(Batcher, GivesASliceWithItsLastPacketAlsoWhereTheOneBeforeIsMissing) {
 
 TEST_F(Batcher, WaitsForALostPacketNoLongerThanFourPackets) {
   Packets lossy = packets_;
-  lossy.erase(lossy.begin() + 2);  // of slice 0, which then ends with packet 7
+  lossy.erase(lossy.begin() + 2);  // a packet of slice 0, which ends with packet 7
   std::string error;
   ScanBatcher batcher(metadata_, *PointWriter::Create(metadata_, {}, &error), {8, 4});
   for (std::size_t i = 0; i < 12; ++i) {
@@ -182,7 +184,8 @@ TEST_F(Batcher, APacketThatComesTooLateIsNoLoss) {
 
 TEST_F(Batcher, LeavesOutSlicesOfWhichNothingCame) {
   Packets lossy = packets_;
-  lossy.erase(lossy.begin() + 16, lossy.begin() + 80);  // slices 2 to 9
+  // Removes the slices 2 to 7, and the slices 0 and 1 of the next scan.
+  lossy.erase(lossy.begin() + 16, lossy.begin() + 80);
   const auto slices = Run(lossy);
   ASSERT_EQ(slices.size(), 16U);
   EXPECT_EQ(slices[1].index, 1U);
@@ -212,7 +215,7 @@ TEST_F(Batcher, JoiningOrLeavingInTheMiddleOfAScanIsNoLoss) {
 TEST_F(Batcher, ANewInitIdEndsTheScanAndStartsAnother) {
   Packets restarted = packets_;
   for (std::size_t i = 70; i < restarted.size(); ++i) SetInitId(&restarted[i], 7);
-  // The restarted sensor counts its scans from zero.
+  // After its restart, the sensor counts its scans from zero.
   for (std::size_t i = 70; i < restarted.size(); ++i) restarted[i][2] = restarted[i][3] = 0;
   restarted.resize(128);
   const auto slices = Run(restarted);
@@ -314,7 +317,8 @@ TEST(Window, PadsToTheFullTurnAndCompletesWithTheLastColumnOfTheWindow) {
   EXPECT_EQ(batcher.stats().lost_packets, 0U);
 }
 
-/// Columns of a window, which may contain the begin of a scan.
+/// Azimuth windows, each with its first column and its number of columns. A window may contain the
+/// begin of a scan.
 class AnyWindow : public ::testing::TestWithParam<std::pair<std::uint32_t, std::uint32_t>> {
  protected:
   static std::vector<Slice> Run(const Metadata& metadata, BatcherStats* stats) {

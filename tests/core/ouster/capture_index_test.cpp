@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Places and duration of captures that are longer than those in tests/data.
+// Tests the offsets and the duration of captures that are longer than the captures in tests/data.
 #include "src/ouster/capture_index.h"
 
 #include <gtest/gtest.h>
@@ -23,8 +23,8 @@ constexpr int kDatagrams = 5000;
 
 bool Always() { return true; }
 
-/// A capture of a datagram each millisecond, which holds its number. Datagram `swapped` comes after
-/// its successor.
+/// A capture with one datagram per millisecond, whose payload is its number. The datagram with the
+/// number `swapped` comes after the next one.
 class CaptureIndexTest : public ::testing::Test {
  protected:
   void Write(int swapped = kDatagrams) {
@@ -83,7 +83,7 @@ TEST_F(CaptureIndexTest, AReaderSeesAllThatIsLaterFromItsPlaces) {
     const auto next = reader->Next();
     ASSERT_TRUE(next) << time;
     EXPECT_LE(next->time, kStart + milliseconds(time));
-    // A place much earlier than the time would make a seek slow.
+    // The offset must not be much earlier than the time, because this would make a seek slow.
     EXPECT_GE(next->time, kStart + milliseconds(std::min(time, kDatagrams) - 250));
   }
 }
@@ -127,7 +127,8 @@ TEST_F(PcapWriterTest, WritesPayloadsAsLargeAsUdpCarriesAndNoLarger) {
   EXPECT_EQ(reader->error(), "");
 }
 
-/// The end of the file is still in a buffer when the limit is reached.
+/// When the limit is reached, the end of the file is still in a buffer, so that only Close() can
+/// fail.
 TEST_F(PcapWriterTest, LeavesNoFileThatIsCutShort) {
   auto* const before = std::signal(SIGXFSZ, SIG_IGN);
   rlimit limit{};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The captures in tests/data/ouster, read.
+// Functions that read the captures in tests/data/ouster.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ inline ouster::Metadata LoadMetadata(const std::string& name) {
   return metadata.value_or(ouster::Metadata{});
 }
 
-/// The payloads that have the size of a lidar packet of `metadata`.
+/// Returns the payloads whose size is that of a lidar packet of `metadata`.
 inline std::vector<std::vector<std::uint8_t>> LoadPackets(const std::string& name,
                                                           const ouster::Metadata& metadata) {
   std::string error;
@@ -37,7 +37,8 @@ inline std::vector<std::vector<std::uint8_t>> LoadPackets(const std::string& nam
   return packets;
 }
 
-/// Marks a column of a packet that is not LEGACY as invalid, and sets its time to 0.
+/// Marks a column of the packet as invalid and sets its time to 0. The packet must not have the
+/// profile LEGACY.
 inline void Invalidate(const ouster::PacketFormat& format, std::uint32_t column,
                        std::vector<std::uint8_t>* packet) {
   std::uint8_t* at = packet->data() + format.packet_header_size() + column * format.column_size();

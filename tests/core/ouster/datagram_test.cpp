@@ -35,7 +35,7 @@ struct Part {
   std::size_t offset = 0;
   bool more = false;
   std::uint16_t id = 1;
-  std::uint8_t host = 2;  // last byte of the source
+  std::uint8_t host = 2;  // the last byte of the source address
 };
 
 Bytes Ipv4(const Bytes& body, Part part = {}) {
@@ -102,7 +102,7 @@ TEST(Datagrams, ComeOutOfEveryKindOfFrame) {
   sll2.insert(sll2.end(), v6.begin(), v6.end());
   Bytes loopback(4);
   loopback.insert(loopback.end(), v4.begin(), v4.end());
-  Bytes offloaded = v4;  // captured before the network card filled in the length
+  Bytes offloaded = v4;  // This packet was captured before the network card set its length.
   offloaded[2] = offloaded[3] = 0;
   const std::vector<std::pair<LinkType, Bytes>> frames = {
       {LinkType::kIpv4, offloaded},
@@ -123,7 +123,7 @@ TEST(Datagrams, ComeOutOfEveryKindOfFrame) {
   }
 }
 
-/// libpcap has a number of its own for this link type.
+/// The file has the number 101 for raw IP packets. libpcap uses another number for this link type.
 TEST(Datagrams, ComeOutOfACaptureOfRawIp) {
   constexpr std::uint32_t kRawIp = 101;
   const Bytes ip = Ipv4(Udp(Payload(100)));
@@ -148,7 +148,7 @@ TEST(Datagrams, ComeOutOfACaptureOfRawIp) {
 
 class Fragments : public ::testing::TestWithParam<bool> {
  protected:
-  /// Cuts a datagram into IP packets of up to `size` bytes of payload each.
+  /// Cuts the datagram into IP packets with up to `size` bytes of payload each.
   std::vector<Bytes> Cut(const Bytes& udp, std::size_t size, Part part = {}) const {
     std::vector<Bytes> packets;
     for (std::size_t at = 0; at < udp.size(); at += size) {
@@ -242,7 +242,7 @@ TEST_P(Fragments, ThatContradictEachOtherDiscardTheirDatagram) {
   EXPECT_FALSE(extractor.Extract(LinkType::kRaw, View(of_one[2])));
 }
 
-// At 640 packets/s the identifiers of IPv4 repeat every 102 s.
+// With 640 packets per second, the identifiers of IPv4 repeat every 102 s.
 TEST_P(Fragments, OfAnIncompleteDatagramAreForgottenBeforeTheirIdentifierComesRound) {
   Bytes next = Payload(4000);
   std::reverse(next.begin(), next.end());
@@ -280,7 +280,7 @@ TEST_P(Fragments, AreWholeUnitsOfEightBytesButForTheLast) {
   auto packets = Cut(Udp(Payload(4000)), 1476);
   UdpExtractor extractor;
   for (const Bytes& packet : packets) EXPECT_FALSE(extractor.Extract(LinkType::kRaw, View(packet)));
-  // The next datagram of the same identifier is not disturbed.
+  // The fragment must not disturb the next datagram with the same identifier.
   const Bytes next = Payload(2000);
   std::optional<UdpDatagram> datagram;
   UdpExtractor other;
@@ -302,7 +302,7 @@ TEST_P(Fragments, OfAnIdentifierThatComesAgainMakeAnotherDatagram) {
   }
 }
 
-/// The second fragment begins where the first one does, but is longer.
+/// The second fragment begins at the same byte as the first fragment, but is longer.
 TEST_P(Fragments, ThatOverlapInPartDiscardTheirDatagram) {
   const Bytes udp = Udp(Payload(4000));
   const auto packets = Cut(udp, 1480);
@@ -327,11 +327,11 @@ TEST(Datagrams, OfIpv6AreToldFromOtherPackets) {
   tcp[6] = kTcp;
   Bytes extended = Ipv6(Udp(Payload(100)));
   extended[6] = 60;
-  extended[40] = kTcp;  // after an extension of destination options
+  extended[40] = kTcp;  // the protocol after an extension with destination options
   extended[41] = 0;
-  Bytes endless = Ipv6(Bytes(80));  // ten extensions, each of which announces another
+  Bytes endless = Ipv6(Bytes(80));  // ten extensions, each followed by another extension
   endless[6] = 0;
-  Bytes beyond = Ipv6({17, 200, 0, 0, 0, 0, 0, 0});  // an extension that the packet cannot hold
+  Bytes beyond = Ipv6({17, 200, 0, 0, 0, 0, 0, 0});  // an extension that is longer than its packet
   beyond[6] = 60;
   for (const Bytes& packet : {tcp, extended, endless, beyond}) {
     UdpExtractor extractor;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Captures against the digests that the Ouster SDK ships with them, and points against its
-// formulas.
+// Compares captures with the digests that the Ouster SDK ships with them, and points with the
+// formulas of the SDK.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -22,7 +22,7 @@ namespace {
 
 using test::Md5;
 
-/// Hashes `value` in the smallest unsigned type that holds all values of the channel.
+/// Adds `value` to the hash as the smallest unsigned type that holds all values of the channel.
 void AddValue(const ChannelBits& bits, std::uint32_t value, Md5* md5) {
   const unsigned width = bits.bits + bits.scale_shift;
   if (width <= 8)
@@ -85,7 +85,7 @@ TEST_P(Golden, EveryColumnHeaderHasTheDigestOfTheSdk) {
   for (auto& [name, sum] : md5) EXPECT_EQ(sum.Text(), digest_["packet_hash"][name]) << name;
 }
 
-/// Hashes field `name` of every point in the SDK's type for it.
+/// Returns the hash of the field `name` of all points, in the type that the SDK uses for the field.
 std::string FieldDigest(const std::vector<std::uint8_t>& points, const PointWriter& writer,
                         const char* name, std::size_t bytes) {
   Md5 md5;
@@ -133,7 +133,8 @@ TEST_P(Golden, TheScanOutOfTheBatcherHasTheDigestOfTheSdk) {
   }
 }
 
-/// The formulas of the SDK's xyz table, in double and step by step as its documentation has them.
+/// Computes a point by the formulas for the xyz table in the SDK's documentation, step by step and
+/// in double precision.
 std::array<double, 3> ReferencePoint(const Metadata& m, std::uint32_t beam, std::uint32_t column,
                                      double range_m) {
   constexpr double kPi = 3.14159265358979323846;

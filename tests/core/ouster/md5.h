@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// MD5, in the form of the digests next to the captures.
+// Computes MD5 in the text form of the digests that accompany the captures.
 #pragma once
 #include <glib.h>
 

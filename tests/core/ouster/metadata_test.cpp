@@ -72,7 +72,7 @@ TEST(Metadata, TellsThatTheStreamIsSentNowhere) {
   auto m = Parse(root, &error);
   ASSERT_TRUE(m) << error;
   EXPECT_TRUE(m->switched_off);
-  // Points can still be made, because a capture may have been recorded later than the metadata.
+  // Points can still be written, because the capture may be newer than the metadata.
   EXPECT_TRUE(PointWriter::Create(*m, {}, &error)) << error;
   root["lidar_data_format"]["udp_profile_lidar"] = "OFF";
   m = Parse(root, &error);
@@ -173,10 +173,12 @@ TEST(Metadata, PixelsMayHaveAnglesOfTheirOwn) {
   ASSERT_TRUE(back) << error;
   EXPECT_EQ(back->pixel_angles.azimuth_deg, m.pixel_angles.azimuth_deg);
   EXPECT_EQ(back->pixel_angles.altitude_deg, m.pixel_angles.altitude_deg);
-  EXPECT_DOUBLE_EQ(back->model.beams[3].azimuth_deg, 60 - 512 * 0.125);  // of the middle column
+  // A beam has the azimuth of its pixel in the middle column.
+  EXPECT_DOUBLE_EQ(back->model.beams[3].azimuth_deg, 60 - 512 * 0.125);
   EXPECT_DOUBLE_EQ(back->model.beams[3].altitude_deg, 13);
   const PixelProjection projection(*back);
-  // Beam 16 lies flat; column 480 looks along x, which lidar_to_sensor turns around.
+  // Beam 16 has the altitude 0. Column 480 looks along the x axis, which lidar_to_sensor turns to
+  // -x.
   const auto p = projection.Point(16, 480, 10'000);
   EXPECT_NEAR(static_cast<double>(p[0]), -10.0, 1e-5);
   EXPECT_NEAR(static_cast<double>(p[1]), 0.0, 1e-5);
@@ -188,7 +190,7 @@ TEST(Metadata, PixelsMayHaveAnglesOfTheirOwn) {
 
 struct Damage {
   const char* pointer;
-  const char* value;  // JSON; "" removes the key
+  const char* value;  // in JSON; "" removes the key
 };
 class BadMetadata : public ::testing::TestWithParam<Damage> {};
 TEST_P(BadMetadata, IsRefusedWithAReason) {
@@ -247,15 +249,15 @@ TEST(Metadata, WhatIsNoJsonObjectIsRefused) {
   EXPECT_FALSE(ParseMetadata(std::string(Metadata::kMaxJsonSize + 1, ' '), &error));
 }
 
-/// Text of about `size` bytes: `piece` over and over within an object.
+/// Returns a text of about `size` bytes, in which `piece` is repeated within an object.
 std::string Filled(const std::string& piece, std::size_t size) {
   std::string text = "{\"a\":[";
   while (text.size() + 2 * piece.size() + 2 < size) text += piece + ",";
   return text + piece + "]}";
 }
 
-/// The processor time in which metadata of this size, filled with `piece`, is refused. The least of
-/// three, because other processes disturb some.
+/// Returns the processor time for refusing metadata of `bytes` bytes that are filled with `piece`.
+/// This is the shortest time of three, because other processes may disturb a measurement.
 double CostOf(const char* piece, std::size_t bytes) {
   const std::string text = Filled(piece, bytes);
   double least = 0;
@@ -276,7 +278,7 @@ TEST(Metadata, TakesTimeLinearInItsSize) {
     constexpr double kGrowth = 16;
     const double small = CostOf(piece, kSmall);
     const double large = CostOf(piece, static_cast<std::size_t>(kGrowth) * kSmall);
-    // A quadratic parser takes kGrowth squared times as long.
+    // A parser whose time is quadratic in the size would take kGrowth * kGrowth times as long.
     EXPECT_LT(large, 5 * kGrowth * std::max(small, 1.0)) << piece;
   }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Which pixels become points: limits of the range, for each return, and masks.
+// Tests which pixels become points: limits of the range, which hold for each return, and masks.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -16,7 +16,7 @@
 namespace lidar::ouster {
 namespace {
 
-/// Ranges of both returns of a packet's first pixel; 0: none.
+/// The ranges of both returns of the first pixel in a packet. A range of 0 means no return.
 struct Ranges {
   std::uint32_t first;
   std::uint32_t second;
@@ -86,8 +86,8 @@ TEST(MissingPoints, AreZeroesButForCoordinatesThatAreNoNumbers) {
   }
 }
 
-/// The azimuths, from -180 to 180 degrees, of the first beam's points in a scan that measures 20 m
-/// everywhere.
+/// Returns the azimuths of the first beam's points, from -180 to 180 degrees. In this scan, each
+/// range is 20 m.
 std::vector<double> AzimuthsWithin(const char* sectors) {
   const Metadata m = test::LoadMetadata("OS-1-128_v2.3.0_1024x10.json");
   const std::uint32_t columns = m.model.columns_per_scan;
@@ -122,7 +122,7 @@ std::vector<double> AzimuthsWithin(const char* sectors) {
 }
 
 TEST(Sectors, MayContainTheDirectionAhead) {
-  // A scan has 1024 columns, 57 of which look into 20 degrees.
+  // A scan has 1024 columns. 57 of them are within a sector of 20 degrees.
   const auto ahead = AzimuthsWithin("350-10");
   EXPECT_NEAR(static_cast<double>(ahead.size()), 57, 1);
   for (const double azimuth : ahead) EXPECT_LT(std::abs(azimuth), 10.1);
@@ -177,7 +177,8 @@ TEST(MaskImage, PixelsAreShiftedAsTheBeamsAre) {
   const std::string header = "P5 1024 32 255\n";
   std::vector<std::uint8_t> pgm(header.begin(), header.end());
   pgm.resize(header.size() + std::size_t{columns} * m.format.beams);
-  pgm[header.size() + std::size_t{beam} * columns + 100] = 9;  // as seen, that is destaggered
+  // Column 100 is a column of the destaggered image.
+  pgm[header.size() + std::size_t{beam} * columns + 100] = 9;
   std::string error;
   const auto mask = ParseMaskImage({pgm.data(), pgm.size()}, m, &error);
   ASSERT_TRUE(mask) << error;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Every profile: what the writer puts into packets, parser and batcher get out again.
+// Tests each profile: parser and batcher must return the values that the writer put into packets.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -17,7 +17,7 @@ namespace {
 struct Case {
   Profile profile;
   HeaderType header;
-  std::uint32_t pixel_bytes;  // as the SDK has it
+  std::uint32_t pixel_bytes;  // the size of a pixel in the SDK
   std::uint32_t columns = 512;
   std::uint32_t columns_per_packet = 16;
   std::uint32_t beams = 16;
@@ -49,7 +49,7 @@ Metadata MakeMetadata(const Case& c) {
   return m;
 }
 
-/// Returns the value of a pixel in a channel: any number that fits the channel's bits.
+/// Returns the value of a pixel in a channel, which may be any number that the channel can hold.
 std::uint32_t ValueOf(const ChannelBits& bits, std::uint32_t beam, std::uint32_t column) {
   std::minstd_rand random(1 + beam * 7919 + column * 31 +
                           static_cast<std::uint32_t>(bits.channel) * 104729);
@@ -58,7 +58,8 @@ std::uint32_t ValueOf(const ChannelBits& bits, std::uint32_t beam, std::uint32_t
   return static_cast<std::uint32_t>((random() & mask) << bits.scale_shift);
 }
 
-/// Writes a scan. If `again`, first sets all bits of each pixel, which the values must replace.
+/// Writes the packets of a scan. If `again` is true, all bits of each pixel are set first, so that
+/// the writer must replace them.
 std::vector<std::vector<std::uint8_t>> WriteScan(const Metadata& m, std::uint32_t frame_id,
                                                  bool again = false) {
   PacketWriter writer(m.format, {m.init_id, m.serial});
@@ -211,7 +212,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{Profile::kRng15Rfl8Nir8, kStd, 4, 512, 24, 32, 10}));
 
 TEST(Profiles, AllOfThemAreTested) {
-  // One of the profiles, OFF, has no packets.
+  // The profile OFF is one of these profiles, but has no packets.
   EXPECT_EQ(kProfileCount, 14U);
   EXPECT_EQ(LayoutOf(Profile::kOff).count, 0U);
   EXPECT_EQ((PacketFormat{Profile::kOff, kStd, 64, 16}.packet_size()), 0U);

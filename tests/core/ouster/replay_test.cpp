@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// `ouster-replay` sends what its scanner saw, in every profile, or what a capture holds.
+// Tests that `ouster-replay` sends, in each profile, what its scanner measured, and that it sends
+// the packets of a capture.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -40,7 +41,7 @@ synth::Returns Scan(const ouster::Metadata& metadata) {
   return returns;
 }
 
-/// The points of the first scan, and where a field stands in them.
+/// The points of the first scan, and the offsets of their fields.
 struct Points {
   std::vector<std::uint8_t> bytes;
   PointFields fields;
@@ -134,7 +135,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{Profile::kRng19Rfl8Sig16Nir16, kStandard, "512x20", 8},
                       Case{Profile::kRng15Rfl8Nir8Dual, kStandard, "1024x5", 64}));
 
-/// A capture of two scans, and of a packet without a payload.
+/// A capture of two scans and of one packet without a payload.
 class Capture : public test::FolderTest {
  protected:
   void SetUp() override { Write(0); }
@@ -173,7 +174,7 @@ class Capture : public test::FolderTest {
     std::uint64_t time_ns = 0;
     Duration due{};
   };
-  /// Returns the next lidar packet, with a right CRC.
+  /// Returns the next lidar packet, and expects its CRC to be right.
   Sent Next(PcapStream* stream) {
     auto packet = stream->Next();
     for (; packet->imu; packet = stream->Next()) {
@@ -187,7 +188,7 @@ class Capture : public test::FolderTest {
     return {lidar->header(), lidar->Column(0).timestamp, packet->due};
   }
 
-  static constexpr int kRound = 64;  // packets
+  static constexpr int kRound = 64;  // in packets
   ouster::Metadata metadata_;
   std::vector<std::uint64_t> imu_times_ns_;
 };
@@ -214,7 +215,8 @@ TEST_F(Capture, GoesOnInEachRoundAsOneSensor) {
   for (std::size_t i = 0; i < 60; ++i) EXPECT_EQ(imu_times_ns_[i], 1'000'000 + i * 5'000'000);
 }
 
-/// A sensor with an azimuth window sends columns that it has not sampled, without their time.
+/// A sensor with an azimuth window also sends columns outside the window. These columns have no
+/// time.
 TEST_F(Capture, HasItsTimesFromTheFirstValidColumn) {
   SynthOptions options;
   options.model = kModel;
@@ -311,7 +313,7 @@ TEST(CaptureOfAccelGyro, HasTheNewSensorInItsImuPackets) {
   EXPECT_EQ(again->bytes[ouster::kStandardHeader.frame_id], 1U) << "of the second round";
 }
 
-/// A sensor that sends some packets at once.
+/// A sensor that sends `count` packets at once.
 class FewPackets final : public PacketStream {
  public:
   explicit FewPackets(int count) : count_(count) {}
@@ -337,7 +339,7 @@ TEST(PlayerFaults, KeepNoPacketBackAtTheEnd) {
   EXPECT_EQ(player.counts().sent, 3U);
 }
 
-/// A sensor that sends one packet now, and the next much later.
+/// A sensor that sends one packet now, and each further packet an hour later.
 class OnePacketNow final : public PacketStream {
  public:
   void Restart(const Start&) override {}

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Times, foreign packets and IMU: what the stream adds to parser and batcher.
+// Tests what the stream adds to parser and batcher: times, packets of other sensors, and IMU
+// packets.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -32,7 +33,7 @@ TEST(ClockMapper, FollowsTheFastestPacketAndNotTheJitter) {
 
 TEST(ClockMapper, TimesRiseWhileFasterPacketsSetTheOffset) {
   ClockMapper mapper(ClockMapper::Mode::kFollow);
-  // The first three packets waited in a socket for 5 ms.
+  // The first three packets were delayed by 5 ms in a socket.
   Time last{};
   for (int i = 0; i < 20; ++i) {
     const Duration sampled = std::chrono::seconds(5) + i * 1600us;
@@ -50,14 +51,15 @@ TEST(ClockMapper, OfAFileHoldsTheOffsetOfTheFirstPacketUntilAClockJumps) {
   ClockMapper mapper(ClockMapper::Mode::kHold);
   const std::uint64_t second = 1'000'000'000;
   mapper.Observe(5 * second, Time{std::chrono::seconds(100)});
-  // Each further packet takes 1 ms less than the one before it.
+  // Each further packet arrives with a delay that is 1 ms less than that of the packet before it.
   for (std::uint64_t i = 1; i < 9; ++i) {
     const Time arrival = Time{std::chrono::seconds(100 + i)} - Duration{1'000'000} * i;
     EXPECT_FALSE(mapper.WouldJump((5 + i) * second, arrival));
     mapper.Observe((5 + i) * second, arrival);
     EXPECT_EQ(mapper.Map((5 + i) * second), Time{std::chrono::seconds(100 + i)});
   }
-  EXPECT_FALSE(mapper.WouldJump(20 * second, Time{std::chrono::seconds(116)}));  // 1 s: no jump
+  // A difference of 1 s is no jump.
+  EXPECT_FALSE(mapper.WouldJump(20 * second, Time{std::chrono::seconds(116)}));
   EXPECT_TRUE(mapper.WouldJump(20 * second, Time{std::chrono::seconds(116)} + Duration{1}));
   EXPECT_TRUE(mapper.WouldJump(20 * second, Time{std::chrono::seconds(114)} - Duration{1}));
   mapper.Observe(20 * second, Time{std::chrono::seconds(200)});
@@ -66,7 +68,8 @@ TEST(ClockMapper, OfAFileHoldsTheOffsetOfTheFirstPacketUntilAClockJumps) {
 
 TEST(ClockMapper, FollowsAClockThatDrifts) {
   ClockMapper mapper(ClockMapper::Mode::kFollow);
-  // The sensor's clock is 100 ppm fast for a minute, then 100 ppm slow for a minute.
+  // The sensor's clock is too fast by 100 ppm for a minute, and then too slow by 100 ppm for a
+  // minute.
   double sensor = 1e9;
   Time arrival{10s};
   for (int i = 0; i < 120'000; ++i) {
@@ -79,8 +82,8 @@ TEST(ClockMapper, FollowsAClockThatDrifts) {
   }
 }
 
-/// Maps a packet each millisecond from `from` to `until`; each arrives `delay` late. Returns the
-/// last error.
+/// Maps the times of packets that are sent every millisecond from `from` to `until`. Each packet
+/// arrives after `delay`. Returns the error of the last time.
 Duration ErrorAfter(ClockMapper* mapper, Duration from, Duration until, Duration delay) {
   Duration error{};
   for (Duration t = from; t < until; t += 1ms) {
@@ -94,9 +97,10 @@ Duration ErrorAfter(ClockMapper* mapper, Duration from, Duration until, Duration
 TEST(ClockMapper, RemembersTheFastestPacketOfTheWindowBefore) {
   ClockMapper mapper(ClockMapper::Mode::kFollow);
   EXPECT_EQ(ErrorAfter(&mapper, 0s, 4s, 0ms), 0ms);
-  // A window has slow packets only, but the earlier fast packets still count.
+  // In this window all packets are slow, but the fast packets of the window before still count.
   EXPECT_EQ(ErrorAfter(&mapper, 4s, 8s, 10ms), 0ms);
-  // Later the fast packets are forgotten, and the offset rises as fast as clocks may drift.
+  // After this window the fast packets are forgotten. The offset then rises at the largest drift
+  // that clocks may have.
   const Duration error = ErrorAfter(&mapper, 8s, 16s, 10ms);
   EXPECT_GT(error, 2ms);
   EXPECT_LT(error, 4ms);
@@ -180,7 +184,7 @@ TEST_F(Stream, ArrivalTimesAreThoseOfTheFirstPacket) {
 TEST_F(Stream, ASensorOnPtpGivesTrueUtc) {
   metadata_.timestamp_mode = "TIME_FROM_PTP_1588";
   auto stream = Make();
-  // PTP is TAI: 37 s ahead of UTC. The packets take 3 ms to arrive.
+  // PTP has TAI, which is 37 s ahead of UTC. The packets arrive after 3 ms.
   const Duration start = kUtcStart + 37s - Duration(static_cast<std::int64_t>(FirstTimestamp()));
   const auto slices = Run(stream.get(), 3ms, static_cast<std::uint64_t>(start.count()));
   EXPECT_TRUE(stream->has_synchronised_clock());
@@ -206,12 +210,12 @@ TEST_F(Stream, TimesNeverGoBackWhenTheSensorsClockDoes) {
   }
   EXPECT_EQ(stream->stats().clock_jumps, 1U);
   for (const TimedSlice& slice : again) EXPECT_EQ(slice.slice.after_gap, &slice == &again.front());
-  stream->Restart();  // as after a pause: any time may follow
+  stream->Restart();  // As after a pause, the next time may be any time.
   Run(stream.get(), 10s, 7'200'000'000'000);
   EXPECT_EQ(stream->stats().clock_jumps, 1U);
 }
 
-/// Packets that are under way for up to 60 ms, longer than a slice takes.
+/// Packets are delayed by up to 60 ms, which is longer than the duration of a slice.
 TEST_F(Stream, TimesNeverGoBackWhateverTheJitterAndSlicesEndWithTheirLastPacket) {
   for (const TimeSource times : {TimeSource::kSensor, TimeSource::kArrival}) {
     StreamOptions options;
@@ -304,7 +308,7 @@ TEST_F(Stream, PacketsWithoutASerialNumberGoByTheirSender) {
   EXPECT_EQ(push(packets_[0], ours), PacketVerdict::kLidar);
   EXPECT_EQ(push(imu, ours), PacketVerdict::kImu);
   EXPECT_EQ(push(imu, theirs), PacketVerdict::kForeign);
-  // This packet has the serial number, so the sensor has moved to another address.
+  // This packet has the sensor's serial number, so the sensor now has another address.
   EXPECT_EQ(push(packets_[1], theirs), PacketVerdict::kLidar);
   EXPECT_EQ(push(imu, theirs), PacketVerdict::kImu);
 }
@@ -318,7 +322,7 @@ TEST_F(Stream, APacketOfAnotherSizeIsForeignWhereItSaysSo) {
   packet[kStandardHeader.serial] ^= 1;
   EXPECT_EQ(stream->Push({packet.data(), packet.size()}, now), PacketVerdict::kForeign);
   auto no_lidar = packet;
-  no_lidar[0] ^= 0x40;  // the packet's type
+  no_lidar[0] ^= 0x40;  // the type of the packet
   EXPECT_EQ(stream->Push({no_lidar.data(), no_lidar.size()}, now), PacketVerdict::kWrongSize);
   std::fill_n(packet.begin() + kStandardHeader.serial, 5, std::uint8_t{0});
   EXPECT_EQ(stream->Push({packet.data(), packet.size()}, now), PacketVerdict::kWrongSize);
@@ -354,7 +358,7 @@ TEST(Legacy, TheFirstSenderHeardIsTheSensorUntilItFallsSilent) {
   EXPECT_EQ(push(1, Time{1001ms}, {2}), PacketVerdict::kForeign);
   EXPECT_EQ(push(1, Time{1002ms}, {1}), PacketVerdict::kLidar);
   EXPECT_EQ(push(2, Time{2500ms}, {2}), PacketVerdict::kLidar);
-  // A seek leads back to the first sender.
+  // After a seek, a packet of the first sender may follow.
   stream->Reposition();
   EXPECT_EQ(push(3, Time{1500ms}, {1}), PacketVerdict::kLidar);
 }

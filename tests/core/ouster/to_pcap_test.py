@@ -38,7 +38,8 @@ def make_cloud(seed):
             pixels[beam, column] = (range_mm, intensity)
             point = point_at(beam, column, range_mm, intensity)
             behind = point_at(beam, column, range_mm + 900, 1 - intensity)
-            # Of the points of a pixel the nearest stays, wherever it stands.
+            # If a pixel has several points, only the nearest point counts, in whichever order they
+            # are.
             data += dice.choice((point, point + behind, behind + point))
     return pixels, data
 
