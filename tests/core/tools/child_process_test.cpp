@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Programs that a program of ours starts, and pipes that it writes to.
+// Tests the programs that one of our programs starts, and the pipes to which it writes.
 #include "src/tools/common/child_process.h"
 
 #include <fcntl.h>
@@ -67,7 +67,7 @@ TEST(ChildProcess, GivesWholeLines) {
   EXPECT_EQ(lines, (std::vector<std::string>{"one", "", "three"}));
 }
 
-/// A pipe of one page, the smallest that the kernel grants.
+/// A pipe with the capacity of one page, which is the smallest that the kernel allows.
 struct Pipe {
   Pipe() {
     int fds[2];
@@ -98,7 +98,7 @@ TEST(AsyncWriter, WritesAllInOrderAndHasRoomAgainForWhatWasRead) {
   AsyncWriter writer(pipe.write.get(), 100);
   for (int i = 0; i < 50; ++i) {
     const std::string text(80, static_cast<char>('a' + i % 26));
-    // The writer frees the room of a text just after the text is in the pipe.
+    // The writer frees the room of a text shortly after it wrote the text to the pipe.
     std::uint64_t refused = 0;
     EXPECT_TRUE(test::Eventually([&] { return writer.Write(text) || ++refused > 10'000; }));
     ASSERT_LE(refused, 10'000U) << i;
@@ -108,7 +108,7 @@ TEST(AsyncWriter, WritesAllInOrderAndHasRoomAgainForWhatWasRead) {
 
 TEST(AsyncWriter, DropsAndCountsWhatASlowReaderLeavesNoRoomFor) {
   Pipe pipe;
-  const std::size_t more = 2 * pipe.capacity();  // than the pipe takes
+  const std::size_t more = 2 * pipe.capacity();  // more than the capacity of the pipe
   const std::size_t room = more + 1'000;
   std::string received;
   {

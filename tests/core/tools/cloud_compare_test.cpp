@@ -43,7 +43,7 @@ TEST(CloudCompare, UnorganisedCloudsMayComeInAnyOrderAndWithoutZeros) {
   EXPECT_NEAR(c.max_error_m, 0.02, 1e-6);
 }
 
-/// PCD files mark missing returns by such points.
+/// In PCD files, a point whose coordinates are not finite marks a missing return.
 TEST(CloudCompare, PointsThatAreNotFiniteAreMissingReturns) {
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   constexpr float kFar = std::numeric_limits<float>::infinity();

@@ -16,7 +16,8 @@ constexpr std::int64_t kSecond = 1000000000;
 constexpr std::int64_t kMs = 1000000;
 constexpr std::int64_t kOrigin = 1700000000 * kSecond;
 
-/// 8 Mbit/s, then 4; 10 s in two parts.
+/// Returns measurements of 10 s over a link of 8 Mbit/s for the first half, and of 4 Mbit/s for the
+/// second half.
 Measurements TwoSteps() {
   Measurements m;
   m.options.duration_s = 10;
@@ -44,12 +45,13 @@ TEST(DemoLedger, CountsScansByWhatBecameOfTheirSlices) {
   Ledger ledger;
   for (std::uint32_t slice = 0; slice < 2; ++slice) {
     Live(&ledger, 1, slice, kOrigin);
-    ledger.Add(Record("captured", 2, slice, kOrigin + kSecond));  // skipped by the encoder
+    ledger.Add(Record("captured", 2, slice, kOrigin + kSecond));  // The encoder skips this scan.
     ledger.Add(Record("captured", 3, slice, kOrigin + 2 * kSecond));
     ledger.Add(Record("encoded", 3, slice, kOrigin + 2 * kSecond));
   }
-  ledger.Add(Record("decoded", 3, 1, kOrigin + 2 * kSecond));   // its slice 0 was lost
-  ledger.Add(Record("captured", 4, 0, kOrigin + 3 * kSecond));  // cut off by the end
+  ledger.Add(Record("decoded", 3, 1, kOrigin + 2 * kSecond));  // Slice 0 of this scan is lost.
+  // The end of the run cuts this scan off.
+  ledger.Add(Record("captured", 4, 0, kOrigin + 3 * kSecond));
   const ScanCounts n = ledger.Count();
   EXPECT_EQ(n.captured, 3U);
   EXPECT_EQ(n.skipped, 1U);
@@ -66,7 +68,8 @@ TEST(DemoLedger, AScanIsInTimeWhereEachSliceIsThereWithinAFifthOfASecond) {
     Live(&ledger, 1, slice, kOrigin);
     Live(&ledger, 2, slice, kOrigin + kSecond);
   }
-  // The last column is 1 ms before the capture.
+  // The last column was measured 1 ms before the time of `captured`, so that scan 2 is late by 1
+  // ms.
   ledger.Add(Record("decoded", 1, 1, kOrigin + 199 * kMs));
   ledger.Add(Record("decoded", 2, 1, kOrigin + kSecond + 200 * kMs));
   EXPECT_EQ(ledger.Count().complete, 2U);
@@ -117,7 +120,7 @@ TEST(DemoLinkLog, OfTwoLinksIsInTheOrderOfTime) {
   const auto write = [&](std::size_t link, const char* lines) {
     std::ofstream(LinkFile(options, "packets.csv", link)) << "names of the columns\n" << lines;
   };
-  // Each link counts time_s from its own first packet.
+  // In each log, time_s is 0 at the first packet of its own link.
   write(0, "0,5000,0,1,7,8,1,1,3,delivered,1,9\n2,2000005000,0,3,7,8,1,1,3,delivered,1,9\n");
   write(1, "0,1000005000,0,2,7,8,1,1,3,delivered,1,9\n2,3000005000,0,4,7,8,1,1,3,delivered,1,9\n");
   const auto packets = ReadLinkLogs(options);
@@ -165,7 +168,7 @@ TEST(DemoSamples, HaveTheUnitsOfTheirNames) {
   EXPECT_EQ(s.sender_queue_ms, 7);
   EXPECT_EQ(s.step_m, 0.03);
   EXPECT_EQ(s.packets_dropped, 4U);
-  // The links of a bonded sender share the target of the encoder.
+  // The links of a bonded sender share one target, which is the encoder's.
   const nlohmann::json bonded = {{"links", {{{"packets-dropped", 2}}, {{"packets-dropped", 3}}}}};
   const SenderSample b = ReadSample({{"sender", bonded}, {"encoder", encoder}});
   EXPECT_EQ(b.target_bps, 9e6);
@@ -196,15 +199,17 @@ TEST(DemoSummary, CaptureToCloudRunsFromTheLastColumnToTheDecodedSlice) {
 
 TEST(DemoSummary, UtilisationIsOfSteadyTimeAndOfWhatTheEncoderCanUse) {
   auto m = TwoSteps();
-  // 3 Mbit/s all the time, and an encoder that can use up to 6.
+  // The rate is always 3 Mbit/s. The highest rate that the encoder can use is 6 Mbit/s on average.
   for (int i = 0; i < 1000; ++i) m.packets.push_back({i * 0.01, 3750, true, false, 1});
   m.AddBounds(kOrigin, 1e6, 5e6);
-  m.AddBounds(kOrigin + 9 * kSecond, 1e6, 15e6);   // a guess within a gap
-  m.AddBounds(kOrigin + 10 * kSecond, 1e6, 20e6);  // at the end, so they hold for no time
-  m.EndBounds(kOrigin + 10 * kSecond);             // 6 on average
+  // The link is in a gap, so this maximum is a guess.
+  m.AddBounds(kOrigin + 9 * kSecond, 1e6, 15e6);
+  // These bounds begin at the end, so they never hold.
+  m.AddBounds(kOrigin + 10 * kSecond, 1e6, 20e6);
+  m.EndBounds(kOrigin + 10 * kSecond);  // The average of the maximum is 6 Mbit/s.
   const auto s = Summarise(m);
   EXPECT_NEAR(s["mean_rate_bps"].get<double>(), 3e6, 1);
-  // Steady: 2 s of 8 and 4 s of 4 Mbit/s.
+  // The steady time is 2 s at 8 Mbit/s and 4 s at 4 Mbit/s.
   EXPECT_NEAR(s["utilisation"].get<double>(), 18.0 / 32, 0.005);
   EXPECT_NEAR(s["utilisation_of_usable"].get<double>(), 18.0 / 28, 0.005);
 }
@@ -276,7 +281,8 @@ TEST(DemoSummary, APointThatAppearedFromNowhereBreaksAGuarantee) {
   EXPECT_FALSE(AllHold(m));
 }
 
-/// Returns a stream of four scans a second, 2 kB each, for 10 s; `arrives` % of them arrive.
+/// Returns a stream of 10 s with four scans per second, of which `arrives` % arrive. Each scan has
+/// two slices of 1 kB.
 Measurements Stream(int arrives) {
   auto m = TwoSteps();
   m.AddBounds(kOrigin, 64e3, 8e6);
@@ -305,7 +311,7 @@ TEST(DemoVerdict, IsAboutTheScansThatTheLinkCouldHaveCarried) {
 
 TEST(DemoVerdict, AsksNoMoreThanTheSourceGave) {
   auto m = Stream(100);
-  m.ran_s = 11;  // in which the oracle has time for more scans
+  m.ran_s = 11;  // The oracle has time for more scans.
   const std::string text = Judge(m).text;
   EXPECT_NE(text.find("40 of 40 scans arrived whole; a sender that knew the link: 40"),
             std::string::npos)

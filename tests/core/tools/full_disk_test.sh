@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Programs on a full disk report it, fail, and leave neither an empty nor a truncated file. A limit of the size of
-# files simulates the full disk.
+# Tests programs on a full disk. They must report the error, fail, and leave neither an empty nor a truncated file.
+# A limit on the size of files simulates the full disk.
 # usage: full_disk_test.sh PROGRAM ...   (lidar-link, ouster-replay, then lidar-eval)
 set -uo pipefail
 folder=$(mktemp -d)
@@ -9,7 +9,7 @@ trap 'rm -rf "$folder"' EXIT
 trap '' XFSZ # a write past the limit is an error, not a signal
 failed=0
 
-# interrupted PROGRAM ...: interrupts a program once it has said that it listens.
+# interrupted PROGRAM ...: starts a program and interrupts it after its first line of output.
 interrupted() {
   local pid
   coproc LINK { exec "$@"; }
@@ -18,8 +18,8 @@ interrupted() {
   wait "$pid"
 }
 
-# expect_clean_failure KIB PROGRAM ...: expects an error that names a file in the folder, and that no
-# file is left there.
+# expect_clean_failure KIB PROGRAM ...: expects the program to fail with an error that names a file in
+# the folder, and to leave no file there.
 expect_clean_failure() {
   local limit=$1 output status
   shift
@@ -60,7 +60,7 @@ for program in "$@"; do
         expect_clean_failure "$limit" "$program" to-pcap "$folder/source.pcap" --scans 2 -o "$folder/drive.pcap"
       done
       expect_clean_failure 0 "$program" rd "$folder/source.pcap" --scans 1 --errors 0.02,0.05 --csv "$folder/rd.csv"
-      # A command that fails before its first row leaves no file, either.
+      # A command that fails before its first row must not leave a file either.
       "$program" bounds "$folder/nothing.pcap" --csv "$folder/bounds.csv" >"$folder/source.json" 2>&1 && failed=1
       [ ! -e "$folder/bounds.csv" ] || { echo "bounds.csv is left"; failed=1; }
       ;;

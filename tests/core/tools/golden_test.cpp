@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The report of a fixed run of the demo, and what each option does.
+// Compares the report of a fixed run of the demo, and the effect of each option, with golden files.
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <fstream>
@@ -21,7 +21,8 @@ using test::Lines;
 constexpr std::int64_t kMilli = 1'000'000;
 constexpr std::int64_t kFrom = 1'700'000'000'000 * kMilli;
 
-/// 6 s of 10 scans of two slices; one slice in 9 is lost, one scan in 13 is skipped.
+/// Returns measurements of 6 s with 10 scans per second and two slices per scan. One slice in 9 is
+/// lost, and one scan in 13 is skipped.
 Measurements FixedRun(std::size_t links) {
   Measurements m;
   m.options.duration_s = 6;

@@ -33,8 +33,7 @@ def scans_come_back_with_their_beams_and_times(folder):
     assert all(abs(b - a - 0.1) < 1e-6 for a, b in zip(times, times[1:])), times
     direct, read = slam(*DRIVE), slam(f"kitti:{folder}")
     assert read["scans"] == 12 and read["tracked"] == direct["tracked"], read
-    # The points are the same, and so is the trajectory; only rows without a return are not in the
-    # folder.
+    # The folder has the same points and the same trajectory. It lacks only rows without a return.
     assert abs(read["error"]["ate_rmse_m"] - direct["error"]["ate_rmse_m"]) < 0.002, (read, direct)
     assert abs(read["error"]["length_m"] - direct["error"]["length_m"]) < 1e-3
     assert "not empty" in run("to-kitti", *DRIVE, "-o", folder, fails=True)
@@ -77,7 +76,7 @@ def straight_scans_of_listed_beams_are_read(folder):
         for beam in range(16):
             for column in range(360):
                 azimuth, height = math.radians(column + 0.5), math.radians(beam - 12)
-                # A room of 20 by 12 m, in which the sensor moves half a metre a scan.
+                # The sensor is in a room of 20 by 12 m and moves by half a metre from scan to scan.
                 x, y = math.cos(azimuth), math.sin(azimuth)
                 ahead = (10 - 0.5 * scan) if x > 0 else (10 + 0.5 * scan)
                 wall = min(ahead / abs(x), 6 / abs(y))

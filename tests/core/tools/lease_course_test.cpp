@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A golden file holds what a table of leases writes and holds in a scripted run.
+// Compares the writes and the held leases of a lease table in a scripted run with a golden file.
 #include <chrono>
 #include <optional>
 #include <set>
@@ -12,7 +12,7 @@
 namespace lidar::worker {
 namespace {
 
-/// A table with two places, a store that answers at once or not at all, and a clock.
+/// A lease table for up to two robots, a store that answers at once or not at all, and a clock.
 class LeaseScript {
  public:
   Time now() const { return now_; }
@@ -29,8 +29,8 @@ class LeaseScript {
     Say("entry of " + robot + (record ? " by " + record->worker : ", damaged"));
     table_.OnEntry(robot, ++revision_, record, now_);
   }
-  /// Makes the store refuse the next write. Its answer names the revision `newest`, if there is
-  /// one.
+  /// Makes the store refuse the next write. The answer names `newest` as the newest revision, if it
+  /// has a value.
   void RefuseOnce(std::optional<std::uint64_t> newest) {
     refuses_ = true;
     newest_ = newest;
@@ -66,7 +66,7 @@ class LeaseScript {
         table_.OnStored(write.ticket, ++revision_, now_);
     }
   }
-  /// Notes the held leases if they have changed other than by renewal.
+  /// Notes the held leases if they changed. Renewed leases are no change.
   void NoteHeld() {
     std::string held;
     for (const auto& [name, lease] : table_.HeldAt(now_))

@@ -70,14 +70,14 @@ TEST(LeaseRecord, KnowsWhatDoesNotReadBack) {
 }
 
 TEST(LeaseRecord, KnowsTheVelocityBetweenTwoPoses) {
-  // A left turn of a quarter on a circle of a radius of 10 m, in half a second.
+  // In half a second, the robot turns left by 90 degrees on a circle with a radius of 10 m.
   const double half = std::sqrt(0.5);
   Progress before;
   before.time = 1'000'000'000;
-  before.pose = {5, 6, 7, 0, 0, half, half};  // along y
+  before.pose = {5, 6, 7, 0, 0, half, half};  // looks along y
   Progress after;
   after.time = 1'500'000'000;
-  after.pose = {-5, 16, 7, 0, 0, 1, 0};  // along -x
+  after.pose = {-5, 16, 7, 0, 0, 1, 0};  // looks along -x
   const auto velocity = VelocityBetween(before, after);
   ASSERT_TRUE(velocity);
   const std::array<double, 6> expected = {20 * std::sqrt(2), 0, 0, 0, 0, 3.14159265};
@@ -100,8 +100,8 @@ TEST(LeaseRecord, KnowsTheVelocityBetweenTwoPoses) {
 
 using Pose = std::array<double, 7>;
 
-/// A third of a turn about x = y = z, which takes x to y, y to z and z to x: of the world, or of
-/// the sensor's axes.
+/// Turns a pose by a third of a turn about the axis x = y = z, which moves x to y, y to z and z to
+/// x. Turns the axes of the world if `world` is true, and otherwise the axes of the sensor.
 Pose Turned(const Pose& p, bool world) {
   const double x = p[3], y = p[4], z = p[5], w = p[6];
   if (world)

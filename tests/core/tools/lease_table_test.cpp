@@ -20,7 +20,7 @@ using std::chrono::seconds;
 
 Time At(int ms) { return Time{} + milliseconds(ms); }
 
-/// One table, with a store that answers at once.
+/// A lease table and a store that answers at once.
 class Lease : public ::testing::Test {
  protected:
   void Answer(const std::vector<LeaseTable::Write>& writes, Time now) {
@@ -31,7 +31,7 @@ class Lease : public ::testing::Test {
     }
   }
   bool Has(const std::string& robot, Time now) const { return table_.HeldAt(now).count(robot) > 0; }
-  /// Lets `ms` milliseconds pass one by one. Returns the time after them.
+  /// Lets `ms` milliseconds pass, one after the other. Returns the time at the end.
   Time Pass(Time now, int ms) {
     for (; ms > 0; --ms) {
       now += milliseconds(1);
@@ -196,7 +196,7 @@ TEST_F(Lease, KeepsANewerPoseThanThatOfItsOwnEntry) {
   for (int ms = 0; writes.empty() && ms < 1'000; ++ms) writes = table_.Poll(now += milliseconds(1));
   ASSERT_EQ(writes.size(), 1U);
   table_.SetProgress("r", Scan(6));
-  // The store sends the entry before the answer.
+  // The store sends the new entry to its watchers before it answers the write.
   table_.OnEntry("r", revision_ + 1, ParseLeaseRecord(writes[0].text), now);
   EXPECT_EQ(table_.HeldAt(now).at("r").progress->scan, 6U);
   Answer(writes, now);
@@ -236,7 +236,7 @@ TEST_P(LeaseOfAnother, InABucketThatWasDeletedIsTakenOnceItIsOver) {
   table_.OnEntry("r", 5, LeaseRecord{"other", milliseconds(GetParam()), Scan(3)}, At(0));
   const auto writes = table_.Poll(At(3200));
   ASSERT_EQ(writes.size(), 1U);
-  // The other worker may have renewed its lease a moment ago, unseen by us.
+  // The other worker may have renewed its lease just before, without being noticed here.
   table_.OnRefused(writes[0].ticket, 0, At(3210));
   const int longest_ms = std::max(GetParam(), 1000);
   Time now = Pass(At(3210), longest_ms);
@@ -294,7 +294,7 @@ TEST_F(Lease, MissesAnEntryFromTheFirstRefusalOnAndSaysSoTwiceInTheTimeOfALease)
 TEST_F(Lease, OfARobotThatFailsHereIsLeftToOthers) {
   table_.SetRobots({"r"}, At(0));
   Time now = Pass(At(0), 400);
-  table_.Poll(now + milliseconds(300));  // whose answer comes too late
+  table_.Poll(now + milliseconds(300));  // The answer to this write comes too late.
   table_.LeaveToOthers("r", seconds(5), now);
   table_.OnStored(2, 99, now);
   EXPECT_FALSE(Has("r", Pass(now, 4900)));
@@ -313,7 +313,7 @@ TEST_F(Lease, OfARobotThatHangsHereGoesToAnotherWorkerThoughItHesitates) {
   now = Pass(now, 1'000);
   other.SetRobots({"a", "b", "c", "r"}, now);
   table_.LeaveToOthers("r", Duration{}, now);
-  // The other worker sees our last write late.
+  // The other worker gets our last write late.
   now += milliseconds(100);
   other.OnEntry("r", revision_, ParseLeaseRecord(written_.text), now);
   std::string next;
@@ -340,7 +340,8 @@ TEST_F(Lease, IsNotTakenBeyondTheLimit) {
   EXPECT_EQ(table_.HeldAt(Pass(At(0), 5000)).size(), 4U);
 }
 
-/// Workers whose messages are late or lost, whose clocks differ, and who sleep or die; and a store.
+/// A store and several workers. Messages of the workers are late or lost, their clocks differ, and
+/// workers sleep or die.
 class Fleet {
  public:
   Fleet(unsigned seed, std::size_t workers, bool rough) : random_(seed), rough_(rough) {
@@ -394,7 +395,8 @@ class Fleet {
     bool dead = false;
     int asleep_until = 0;
     bool knows_robots = false;
-    std::deque<std::pair<int, std::function<void()>>> entries;  // in order, as a consumer has it
+    // The entries are in order, as a consumer receives them.
+    std::deque<std::pair<int, std::function<void()>>> entries;
     std::multimap<int, std::function<void()>> answers;
   };
 

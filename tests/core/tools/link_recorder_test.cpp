@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The figures that lidar-link prints while it runs and at its end.
+// Tests the figures that lidar-link prints during a run and at its end.
 #include "src/tools/bench/lidar_link/recorder.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ using std::chrono::seconds;
 
 constexpr Time kBegin{seconds(5)};
 
-/// A link of 8 Mbit/s.
+/// A recorder for a link of 8 Mbit/s.
 class LinkRecorder : public ::testing::Test {
  protected:
   void SetUp() override { recorder_.Start(kBegin, seconds(1'000)); }

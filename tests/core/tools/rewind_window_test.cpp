@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::uint64_t kMs = 1'000'000;
 
-/// Ten messages a second, and a second of rewind.
+/// A window that goes back one second. The tests add ten messages per second.
 class Rewind : public ::testing::Test {
  protected:
   void Add(std::uint64_t stored_ms, std::optional<std::uint64_t> captured_ms) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// When lidar-edge takes a robot for gone, and when it shuts one out.
+// Tests when lidar-edge considers a robot gone, and when it shuts a robot out.
 #include "src/tools/apps/edge/robot_watch.h"
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::uint64_t kMegabit = 125'000;
 
-/// Notes the bytes of a session once a second.
+/// A robot that sends data in a session. The watch notes the bytes of the session once per second.
 class Robot {
  public:
   explicit Robot(double max_mbps) : watch(max_mbps) {}
@@ -54,7 +54,7 @@ TEST(RobotWatch, ShutsOutARobotThatIsThreeSecondsAheadUntilItIsNot) {
   Robot robot(2);
   robot.Send(2, 100);
   EXPECT_EQ(robot.watch.ToShutOut(), Duration{});
-  // Each count adds 1.5 s of data, and a second passes before the next count.
+  // Each count adds the data of 1.5 s, but only one second passes until the next count.
   robot.Send(3, 4);
   EXPECT_EQ(robot.watch.ToShutOut(), Duration{});
   robot.Send(3, 1);

@@ -4,7 +4,7 @@
 
 namespace lidar::worker {
 
-/// Progress up to scan `number`, which is that many metres ahead.
+/// Returns the progress up to scan `number`. The position of the scan is `number` metres ahead.
 inline Progress Scan(std::uint64_t number) {
   Progress progress;
   progress.pose = {static_cast<double>(number), 0, 0, 0, 0, 0, 1};

@@ -48,7 +48,7 @@ TEST(UdpAddresses, AreHostAndPortWithBracketsAroundIpv6) {
   EXPECT_EQ(ToString(ResolveAddress("7502", "127.0.0.1")), "127.0.0.1:7502");
 }
 
-/// Returns the text of what `action` throws.
+/// Returns the text of the exception that `action` throws.
 template <class Action>
 std::string ErrorOf(Action action) {
   try {
@@ -69,7 +69,7 @@ TEST(UdpAddresses, ThatCannotBeUsedAreNamedInTheError) {
   const Address address = AddressOf(taken);
   expect_begin(ErrorOf([&] { UdpSocket::Bind(address); }),
                "cannot listen on " + ToString(address) + ": ");
-  // A socket may not broadcast unless it asks for that.
+  // Without the option SO_BROADCAST, a socket may not send to a broadcast address.
   expect_begin(ErrorOf([] { UdpSocket::Connect(ResolveAddress("255.255.255.255:9", "")); }),
                "cannot reach 255.255.255.255:9: ");
   expect_begin(ErrorOf([] { BoundSocket().SendMulticastFrom("nosuch0"); }),

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Every program prints its version.
+# Tests that each program prints its version.
 # usage: version_test.sh VERSION PROGRAM ...
 set -uo pipefail
 version=$1
