@@ -78,7 +78,8 @@ TEST(Confidence, FallsLessWhereTheVelocityIsKnown) {
   EXPECT_LT(Variance(known, 0), Variance(unknown, 0) / 10);
 }
 
-/// Drives a bend on which some directions are seen better than others.
+/// Returns the confidence after a bend of `scans` scans that showed some directions better than
+/// others.
 Confidence AfterABend(int scans) {
   const Pose step{Eigen::Quaterniond(Eigen::AngleAxisd(0.1, Eigen::Vector3d(0.1, 0.2, 1))),
                   {1, 0.3, -0.1}};

@@ -23,7 +23,7 @@ TEST(Downsample, KeepsTheFirstPointOfEachCube) {
   const Points kept = Downsample(points, 1);
   ASSERT_EQ(kept.size(), 3U);
   EXPECT_EQ(kept[0], points[0]);
-  EXPECT_EQ(kept[1], points[2]);  // zero is no middle of a cube
+  EXPECT_EQ(kept[1], points[2]);  // The coordinate 0 is on a border between cubes.
   EXPECT_EQ(kept[2], points[3]);
 }
 
@@ -33,7 +33,7 @@ TEST(LocalMap, FindsTheNearestPointWithinACube) {
   map.Add(points);
   const Points kept = map.Collect();
   for (const Eigen::Vector3d& asked : RandomPoints(300, 5)) {
-    double nearest = 1;  // points beyond the reach do not count
+    double nearest = 1;  // Points at 1 m or more are beyond the reach.
     for (const Eigen::Vector3d& point : kept) nearest = std::min(nearest, (point - asked).norm());
     const auto found = map.FindNearest(asked, 1);
     ASSERT_EQ(found.has_value(), nearest < 1);
@@ -72,7 +72,8 @@ TEST(LocalMap, ForgetsWhatIsFarAndUsesItsPlaceAgain) {
   EXPECT_FALSE(map.FindNearest({0, 0.5, 0.5}, 1));
 }
 
-/// Bytes of the heap that are in use; constant with an allocator that is not glibc's.
+/// Returns the bytes of the heap that are in use. Returns a constant if the allocator is not
+/// glibc's.
 std::size_t HeapInUse() {
   const auto info = mallinfo2();
   return info.uordblks + info.hblkhd;
@@ -154,7 +155,7 @@ TEST(LocalMap, ASurfaceTakesEightPoints) {
 }
 
 TEST(LocalMap, ASurfaceIsSeenWithTheCubesNextToIt) {
-  // Four points in one cube, eight in the next one, all at the same height.
+  // One cube has four points, and the next cube has eight. All points have the same height.
   LocalMap map({1, 100});
   map.Add({{0.1, 0.1, 0.5}, {0.6, 0.1, 0.5}, {0.1, 0.9, 0.5}, {0.6, 0.9, 0.5}});
   Points next;
@@ -167,7 +168,8 @@ TEST(LocalMap, ASurfaceIsSeenWithTheCubesNextToIt) {
 }
 
 TEST(LocalMap, TheCubeBesideStandsWhereItIs) {
-  // The plane z = 0.3 x + 0.2, of which the point's own cube has too few points.
+  // The points lie on the plane z = 0.3 x + 0.2. The cube of the searched point alone has too few
+  // points for a surface.
   const auto on_plane = [](double x, double y) { return Eigen::Vector3d(x, y, 0.3 * x + 0.2); };
   for (const double beside : {-1., 1.}) {
     LocalMap map({1, 100});
@@ -196,7 +198,7 @@ TEST(LocalMap, ACubeHoldsTwentyPoints) {
 }
 
 TEST(LocalMap, PointsAreAQuarterOfACubeApart) {
-  LocalMap map({4.4721359, 100});  // so that points stay a metre apart
+  LocalMap map({4.4721359, 100});  // With this size, points are at least 1 m apart.
   map.Add({{0.1, 0.1, 0.1}, {1.09, 0.1, 0.1}, {0.1, 1.11, 0.1}});
   EXPECT_EQ(map.CountPoints(), 2U);
 }
@@ -226,7 +228,7 @@ TEST(LocalMap, ForgetsWhatIsFartherThanItsRadiusOnly) {
   LocalMap map({1, 20});
   map.Add({{19.5, 0.5, 0.5}, {-20.5, 0.5, 0.5}, {0.5, 20.5, 0.5}});
   map.Forget({0, 0, 0});
-  EXPECT_EQ(map.voxels(), 2U);  // cubes whose corners lie at 19 and 20
+  EXPECT_EQ(map.voxels(), 2U);  // the cubes with their corners at 19 and 20
   EXPECT_FALSE(map.FindNearest({-20.5, 0.5, 0.5}, 0.5));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Motions and sensors that are no drive of a car.
+// Tests motions and sensors that do not belong to a driving car.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -34,7 +34,7 @@ TEST(OddMotion, ScansOfAnotherSensorBetweenAreLostAndTheOthersAreNot) {
   EXPECT_LT((last.pose.position - drive.WayTo(38).position).norm(), 0.5);
 }
 
-/// A sensor that sees a quarter of the horizon turns where it stands.
+/// A sensor whose view is a quarter of the horizon turns on the spot.
 TEST(OddMotion, ATurnBringsANarrowViewIntoTheMap) {
   std::minstd_rand random(5);
   std::uniform_real_distribution<double> share(0, 1);
@@ -54,7 +54,7 @@ TEST(OddMotion, ATurnBringsANarrowViewIntoTheMap) {
   OdometrySettings settings;
   settings.deskew = false;
   Odometry odometry(settings);
-  constexpr double kTurn = 0.06;  // per scan
+  constexpr double kTurn = 0.06;  // in radians per scan
   for (int scan = 0; scan < 50; ++scan) {
     const Pose pose{Eigen::Quaterniond(Eigen::AngleAxisd(kTurn * scan, Eigen::Vector3d::UnitZ())),
                     Eigen::Vector3d::Zero()};
@@ -88,7 +88,8 @@ TEST(OddMotion, AGyroscopeMayStop) {
   EXPECT_LT(off, 0.2);
 }
 
-/// The deck does not move around the sensor while the ship turns, and the gyroscope with it.
+/// The sensor stands on the deck of a ship that turns. The gyroscope measures the turn, although
+/// the surroundings on the deck do not move.
 TEST(OddMotion, AFerryIsTheWorld) {
   Drive deck(synth::SceneKind::kStreet, 0);
   Odometry odometry({});
@@ -103,7 +104,7 @@ TEST(OddMotion, AFerryIsTheWorld) {
   EXPECT_LT(Angle(e.pose), 0.01);
 }
 
-/// Turns the points of a standing sensor, as if the sensor had turned since the first scan.
+/// Turns the points of a sensor at rest as if the sensor had turned at `rate` since the first scan.
 TimedPoints TurnedScan(Drive* drive, std::uint64_t number, double rate) {
   TimedPoints scan = drive->Scan(number);
   for (std::size_t i = 0; i < scan.points.size(); ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Scans that do not fit, come late, or belong to no drive.
+// Tests scans that do not fit the map, that come late, or that belong to no drive.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -28,7 +28,8 @@ TEST(OddScans, StartsAfreshBesideAMapToWhichNothingHasFitted) {
 }
 
 TEST(OddScans, IsLostWhereAVehicleCannotHaveMovedLikeThat) {
-  for (const bool was_lost : {false, true}) {  // at scan 8, after which it tracked again
+  // If true, the odometry is lost at scan 8 and tracks again afterwards.
+  for (const bool was_lost : {false, true}) {
     Drive street(synth::SceneKind::kStreet, 10);
     Odometry odometry({});
     for (std::uint64_t i = 0; i < 10; ++i) {
@@ -64,7 +65,7 @@ TEST(OddScans, KnowsWhenAScanDoesNotFit) {
   EXPECT_EQ(found.tracking, Tracking::kTracking);
 }
 
-/// A jump to another place that looks alike.
+/// A jump to another place in a scene that looks similar everywhere.
 struct Jump {
   synth::SceneKind scene;
   const char* sensor;
@@ -155,13 +156,14 @@ TEST(OddScans, FindsItsWayAfterLostScansInWhichTheCarBraked) {
   for (Eigen::Vector3d& point : elsewhere.points) point.z() += 40;
   for (std::uint64_t i = 20; i < 25; ++i)
     EXPECT_EQ(odometry.OnScan(drive.StartOf(i), kPeriod, elsewhere).tracking, Tracking::kLost);
-  // The sensor moves in 0.6 s only as far as it usually does in 0.5 s: 1 m less than predicted.
+  // In 0.6 s, the sensor moves only as far as it did in each 0.5 s before. This is 1 m less than
+  // predicted.
   const Estimate found = odometry.OnScan(drive.StartOf(25), kPeriod, drive.Scan(24));
   EXPECT_EQ(found.tracking, Tracking::kTracking);
   EXPECT_LT((found.pose.position - drive.WayTo(24).position).norm(), 0.3);
 }
 
-/// A hall of which the sensor sees the walls and the edge of the floor.
+/// A large hall. The sensor sees only the walls and the edge of the floor.
 TEST(OddScans, FollowsWhereAllIsFarAway) {
   Points hall;
   for (double along = -50; along < 50; along += 0.5)
@@ -236,7 +238,8 @@ TEST(OddScans, FollowsADriveOfWhichSomeScansAreThinnedOut) {
     const TimedPoints whole = drive.Scan(i);
     TimedPoints thinned;
     for (std::size_t n = 0; n < whole.points.size(); ++n) {
-      if (whole.rings[n] % (i / 5 % 3 + 1) != 0) continue;  // each beam, each 2nd, each 3rd
+      // Keeps each beam, each 2nd beam or each 3rd beam.
+      if (whole.rings[n] % (i / 5 % 3 + 1) != 0) continue;
       thinned.points.push_back(whole.points[n]);
       thinned.phases.push_back(whole.phases[n]);
       thinned.rings.push_back(whole.rings[n]);
@@ -248,7 +251,7 @@ TEST(OddScans, FollowsADriveOfWhichSomeScansAreThinnedOut) {
 }
 
 TEST(OddScans, FollowsWhateverTheRateOfTheScans) {
-  for (const std::uint64_t every : {2U, 3U}) {  // of ten scans a second
+  for (const std::uint64_t every : {2U, 3U}) {  // each 2nd or each 3rd of ten scans per second
     Drive drive(synth::SceneKind::kStreet, 8);
     Odometry odometry({});
     Pose pose;
@@ -274,13 +277,13 @@ TEST(OddScans, ReachesFartherAfterAGapInWhichTheCarBraked) {
   Drive drive(synth::SceneKind::kTown, 10);
   Odometry odometry({});
   for (std::uint64_t i = 0; i < 20; ++i) odometry.OnScan(drive.StartOf(i), kPeriod, drive.Scan(i));
-  // The sensor moves in 0.5 s only as far as it usually does in 0.4 s.
+  // In 0.5 s, the sensor moves only as far as it did in each 0.4 s before.
   const Pose found = odometry.OnScan(drive.StartOf(24), kPeriod, drive.Scan(23)).pose;
   const Pose way = drive.WayTo(23);
   EXPECT_LT((found.position - way.position).norm(), 0.6);
 }
 
-/// After a gap, the map has little of the new scene, so fewer upright surfaces fit.
+/// After a gap, the map shows little of the scene around the sensor, so fewer upright surfaces fit.
 TEST(OddScans, TracksASceneThatAGapHasMadeNew) {
   Drive drive(synth::SceneKind::kField, 15, 4);
   Odometry odometry({});

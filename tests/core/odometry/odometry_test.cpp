@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The odometry on drives whose every pose is known.
+// Tests the odometry on synthetic drives. Each pose of a drive is known.
 #include "src/odometry/odometry.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,8 @@ struct Followed {
   std::vector<Tracking> tracking;
   std::vector<double> deviation_m;
 };
-/// Follows `scans` scans of the drive, without those in `missing`.
+/// Follows the first `scans` scans of the drive, except for the scans whose numbers are in
+/// `missing`.
 Followed Follow(Drive* drive, std::uint64_t scans, const OdometrySettings& settings,
                 const std::vector<std::uint64_t>& missing = {}) {
   Odometry odometry(settings);
@@ -41,7 +42,7 @@ TEST(Odometry, FollowsADriveThroughAStreet) {
   ASSERT_TRUE(error);
   EXPECT_NEAR(error->length_m, 79, 1);
   EXPECT_LT(error->ate_rmse_m, 0.15);
-  EXPECT_LT(error->rpe_rmse_m, 0.1);  // over ten metres
+  EXPECT_LT(error->rpe_rmse_m, 0.1);  // per ten metres
 }
 
 TEST(Odometry, FollowsASlowDriveThoughTheCirclesOnTheGroundMoveAlong) {
@@ -91,7 +92,7 @@ TEST(Odometry, DoesNotTiltOnGroundThatItSawFromAfar) {
   EXPECT_LT(error->end_error_m, 0.3);
 }
 
-/// Results of a drive through the corners of a town, or over the bumps of a field.
+/// The results of a drive round the corners of a town, or over the bumps of a field.
 struct GyroRun {
   double ate_m = 0;
   std::size_t lost = 0;
@@ -106,7 +107,7 @@ GyroRun FollowWithGyro(Drive* drive, std::uint64_t scans, bool gaps, bool gyro,
   for (std::uint64_t i = 0; i < scans; ++i) {
     const Time start = drive->StartOf(i);
     if (gyro) AddTurns(&imu, start + kPeriod, axes_rad, &odometry);
-    if (gaps && i % 30 >= 20) continue;  // a second in three
+    if (gaps && i % 30 >= 20) continue;  // leaves out one second in three
     const Estimate e = odometry.OnScan(start, kPeriod, drive->Scan(i));
     run.lost += e.tracking == Tracking::kLost ? 1 : 0;
     truth.push_back({e.time, drive->TruthAt(e.time)});
@@ -157,7 +158,7 @@ TEST(Odometry, IsWorseWithoutDeskewing) {
   const auto without = Compare(skewed.truth, skewed.estimate);
   ASSERT_TRUE(with && without);
   EXPECT_LT(with->rpe_rmse_m, without->rpe_rmse_m);
-  EXPECT_LT(with->ate_rmse_m, 0.5);  // it also caught up with a car that drove 20 m/s at the start
+  EXPECT_LT(with->ate_rmse_m, 0.5);  // The car already had 20 m/s at the start.
 }
 
 TEST(Odometry, SpansMissingScansAtConstantVelocity) {
@@ -199,7 +200,7 @@ TEST(Odometry, GoesOnAtTheVelocityThatItIsGiven) {
   EXPECT_NEAR(second.pose.position.x(), 2, 0.1) << "the first scan is straight";
 }
 
-/// Error of the last position relative to the first pose.
+/// Returns the error of the last position, measured from the first pose.
 double EndError(const Followed& run) {
   const Pose way = run.truth.front().pose.Inverse() * run.truth.back().pose;
   const Pose found = run.estimate.front().pose.Inverse() * run.estimate.back().pose;
@@ -221,7 +222,7 @@ TEST(Odometry, SaysHowFarItMayBeOff) {
     Drive drive(scene, 8);
     const Followed run = Follow(&drive, 30, {});
     EXPECT_LT(EndError(run), 3 * run.deviation_m.back());
-    const double most = scene == synth::SceneKind::kTunnel ? 60 : 2;  // of 23 m
+    const double most = scene == synth::SceneKind::kTunnel ? 60 : 2;  // The drive is 23 m long.
     EXPECT_LT(run.deviation_m.back(), most);
   }
 }

@@ -27,7 +27,7 @@ INSTANTIATE_TEST_SUITE_P(Pose, PoseLogarithms,
                                          MakeTwist(0, 5, 0, -2, 2, 0.5)));
 
 TEST(Pose, DrivesAQuarterOfACircle) {
-  // At constant speed on a circle of radius 1 to the left.
+  // The motion is a quarter of a circle to the left, with a radius of 1 and at constant speed.
   const Pose pose = Exp(MakeTwist(M_PI / 2, 0, 0, 0, 0, M_PI / 2));
   EXPECT_LT((pose.position - Eigen::Vector3d(1, 1, 0)).norm(), 1e-12);
   EXPECT_NEAR(Angle(pose), M_PI / 2, 1e-12);
@@ -42,7 +42,7 @@ TEST(Pose, IsUndoneByItsInverse) {
 
 TEST(Pose, TakesTheShorterWayRound) {
   Pose pose = Exp(MakeTwist(0, 0, 0, 0, 0, 0.2));
-  pose.rotation.coeffs() *= -1;  // the same rotation
+  pose.rotation.coeffs() *= -1;  // This is the same rotation.
   EXPECT_LT((Log(pose) - MakeTwist(0, 0, 0, 0, 0, 0.2)).norm(), 1e-12);
   EXPECT_NEAR(Angle(pose), 0.2, 1e-12);
 }

@@ -13,7 +13,8 @@ namespace {
 constexpr double kReach_m = 1;
 constexpr double kKernel_m = 0.3;
 
-/// The inner faces of a corner between floor and two walls, 8 m long, seen from its inside.
+/// Returns points of a floor and of two walls that meet in a corner. Each surface is 8 m long. The
+/// origin is inside the corner.
 Points Corner() {
   Points points;
   for (double a = 0.05; a < 8; a += 0.25)
@@ -38,7 +39,7 @@ LocalMap MapOf(const Points& points) {
   return map;
 }
 
-/// What a sensor at `pose` sees of `points`.
+/// Returns `points` in the axes of a sensor at `pose`.
 Points SeenFrom(const Pose& pose, const Points& points) {
   Points seen;
   for (const Eigen::Vector3d& point : points) seen.push_back(pose.Inverse() * point);
@@ -100,7 +101,8 @@ TEST(Align, InATunnelOnlyTheMotionAlongItIsUnknown) {
 }
 
 TEST(Align, TheNormalOfACircleLetsItMoveAlong) {
-  // What one beam sees of the floor stays the same wherever the sensor goes.
+  // The circle that a beam draws on the floor moves with the sensor, so each scan shows the same
+  // circle.
   Points circle;
   for (int i = 0; i < 200; ++i)
     circle.emplace_back(3 * std::cos(0.03 * i), 3 * std::sin(0.03 * i), -1.5);
@@ -117,7 +119,7 @@ TEST(Align, TheNormalOfACircleLetsItMoveAlong) {
 }
 
 TEST(Align, NeighboursWithoutASurfaceCountLittleWhereSurfacesHoldAllDirections) {
-  // A room, and scattered points in it that have moved.
+  // The sensor sees a room without a change. Some single points in the room have moved.
   Points scattered;
   for (const double x : {-3., -1., 1., 3.})
     for (const double y : {-3., -1., 1., 3.})
@@ -148,7 +150,7 @@ TEST(Align, TellsThePartOfThePointsThatFit) {
 }
 
 TEST(Align, GroundThatTheScanShowsDoesNotStandWhateverTheMapHasThere) {
-  // The map has few points of the floor, and none of the poles.
+  // The map has only a few points of the floor, and no points of the poles.
   const Points floor = Floor();
   Points sparse;
   for (std::size_t i = 0; i < floor.size(); i += 50) sparse.push_back(floor[i]);
@@ -160,7 +162,7 @@ TEST(Align, GroundThatTheScanShowsDoesNotStandWhateverTheMapHasThere) {
   EXPECT_LT(found.standing_share, 1e-9);
 }
 
-/// Poles and twigs over a floor, each of them a single point.
+/// The world has poles and twigs over a floor. Each of them is a single point.
 TEST(Align, CountsPointsWithoutASurfaceAmongThoseThatStand) {
   Points twigs;
   for (double x = -3; x < 4; x += 2)
@@ -219,7 +221,7 @@ TEST(Align, EndsAfterItsMostIterations) {
 TEST(MotionThreshold, IsTheRootOfTheMeanSquare) {
   MotionThreshold threshold(100);
   EXPECT_EQ(threshold.sigma_m(), 2);
-  threshold.Add(Moved(0.09, 0, 0));  // as of a sensor at rest
+  threshold.Add(Moved(0.09, 0, 0));  // A sensor at rest has deviations of this size.
   EXPECT_EQ(threshold.sigma_m(), 2);
   threshold.Add(Moved(3, 0, 0));
   EXPECT_NEAR(threshold.sigma_m(), 3, 1e-9);

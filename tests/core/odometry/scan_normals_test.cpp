@@ -14,8 +14,8 @@ namespace {
 constexpr int kColumns = 512;
 constexpr double kTurn = 6.283185307179586;
 
-/// What a sensor of 16 beams, 3 degrees apart, sees of a world given as the range along a
-/// direction.
+/// The points that a sensor of 16 beams, 3 degrees apart, measures in a world. `range_along`
+/// returns the range of the world in a direction.
 struct View {
   explicit View(const std::function<double(const Eigen::Vector3d&)>& range_along) {
     for (std::uint16_t ring = 0; ring < 16; ++ring)
@@ -41,7 +41,7 @@ struct View {
   std::vector<std::uint16_t> rings;
 };
 
-/// The ground, 2 m below.
+/// Returns the range to a flat ground 2 m below the sensor.
 double Ground(const Eigen::Vector3d& along) {
   return along.z() < 0 ? -2 / along.z() : std::numeric_limits<double>::infinity();
 }

@@ -20,7 +20,8 @@ Pose At(double x, double y, double yaw) {
   return {Eigen::Quaterniond(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ())), {x, y, 0}};
 }
 
-/// 299 m of a circle of radius 159 m, at 10 m/s.
+/// Returns 299 m of a circle with a radius of 159 m. The speed is 10 m/s. All lengths are
+/// multiplied by `scale`.
 Trajectory Circle(double scale = 1) {
   constexpr double kRadius = 159;
   Trajectory circle;
@@ -113,7 +114,7 @@ TEST(TrajectoryErrors, AreZeroForTheTruthInAnotherFrame) {
   const Trajectory truth = Circle();
   Trajectory moved = truth;
   for (StampedPose& p : moved) p.pose = At(5, -7, 2) * p.pose;
-  // A quaternion and its negative are one rotation.
+  // A quaternion and its negative are the same rotation.
   for (std::size_t i = 0; i < moved.size(); i += 2) moved[i].pose.rotation.coeffs() *= -1;
   const auto error = Compare(truth, moved);
   ASSERT_TRUE(error);
@@ -190,7 +191,7 @@ TEST(KittiFiles, BeginAtZeroWhateverCommentsTheyHave) {
   EXPECT_EQ(read[0].time, Time{});
 }
 
-/// A straight way at 10 m/s.
+/// Returns a straight trajectory at 10 m/s. All lengths are multiplied by `scale`.
 Trajectory Straight(int poses, double scale = 1) {
   Trajectory way;
   for (int i = 0; i < poses; ++i)
@@ -204,7 +205,7 @@ TEST(TrajectoryErrors, TellTheLargestBesideTheMean) {
   once_off[50].pose.position.y() += 1;
   const auto error = Compare(truth, once_off);
   ASSERT_TRUE(error);
-  EXPECT_EQ(error->poses, 101U);  // the first and the last among them
+  EXPECT_EQ(error->poses, 101U);  // This includes the first and the last pose.
   EXPECT_NEAR(error->ate_max_m, 1, 0.02);
   EXPECT_NEAR(error->ate_rmse_m, 0.1, 0.01);
   EXPECT_NEAR(error->length_m, 100, 1e-9);
@@ -219,7 +220,7 @@ TEST(TrajectoryErrors, TellTurnsInDegrees) {
     turning[i].pose = At(static_cast<double>(i), 0, 0.2 * static_cast<double>(i) * M_PI / 180);
   const auto error = Compare(truth, turning);
   ASSERT_TRUE(error);
-  EXPECT_NEAR(error->rpe_rmse_deg, 2, 1e-6);  // in a second
+  EXPECT_NEAR(error->rpe_rmse_deg, 2, 1e-6);  // in one second
 }
 
 TEST(TrajectoryErrors, TheEndIsSeenFromTheFirstSecond) {
@@ -228,11 +229,12 @@ TEST(TrajectoryErrors, TheEndIsSeenFromTheFirstSecond) {
   for (StampedPose& p : estimate) p.pose = At(30, 40, 1) * p.pose;
   const auto error = Compare(truth, estimate);
   ASSERT_TRUE(error);
-  // The first ten poses, 4.5 m on average, are aligned: 0.1 * (199 m - 4.5 m) is left.
+  // The first ten poses, which are at 4.5 m on average, are aligned. At the end, an error of 0.1 *
+  // (199 m - 4.5 m) remains.
   EXPECT_NEAR(error->end_error_m, 19.45, 1e-6);
 }
 
-/// The mean drift differs with the length of the stretches.
+/// The mean drift of a stretch depends on the length of the stretch.
 TEST(TrajectoryErrors, DriftIsMeasuredOverUpTo800Metres) {
   const Trajectory truth = Straight(802);
   Trajectory bent = truth;
@@ -242,7 +244,8 @@ TEST(TrajectoryErrors, DriftIsMeasuredOverUpTo800Metres) {
   }
   const auto error = Compare(truth, bent);
   ASSERT_TRUE(error && error->drift);
-  // The mean over all stretches of 100 m to 800 m that begin at each tenth pose.
+  // The expected drift is the mean over all stretches of 100 m to 800 m. A stretch begins at every
+  // tenth pose.
   double sum = 0;
   int count = 0;
   for (double stretch = 100; stretch <= 800; stretch += 100)

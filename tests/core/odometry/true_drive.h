@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A drive whose every pose is known, its scans, and its gyroscope.
+// A synthetic drive with its scans and its gyroscope. Each pose of the drive is known.
 #pragma once
 #include "src/odometry/odometry.h"
 #include "src/synth/imu.h"
@@ -9,7 +9,7 @@ namespace lidar::odometry {
 
 inline constexpr Duration kPeriod = std::chrono::milliseconds(100);
 
-/// A car with a sensor, by default of 32 beams.
+/// A car that has a sensor with 32 beams by default.
 class Drive {
  public:
   Drive(synth::SceneKind scene, double speed_mps, std::uint64_t seed = 0)
@@ -43,7 +43,7 @@ class Drive {
     return {Eigen::Quaterniond(w, x, y, z), {pose.x, pose.y, pose.z}};
   }
   synth::Imu Imu() const { return {scanner_.trajectory(), synth::kMemsImu, 7}; }
-  /// Returns the motion from the middle of the first scan to that of another.
+  /// Returns the motion from the middle of the first scan to the middle of scan `number`.
   Pose WayTo(std::uint64_t number) const {
     return TruthAt(StartOf(0) + kPeriod / 2).Inverse() * TruthAt(StartOf(number) + kPeriod / 2);
   }
@@ -64,8 +64,8 @@ class Drive {
   RangeProjection projection_;
 };
 
-/// Adds the turns before `end`, as measured by a gyroscope whose axes are turned by `axes_rad`
-/// about the vertical.
+/// Adds the angular velocities before `end`, as a gyroscope measures them whose axes are turned by
+/// `axes_rad` about the vertical.
 inline void AddTurns(synth::Imu* imu, Time end, double axes_rad, Odometry* odometry) {
   const Eigen::AngleAxisd axes(axes_rad, Eigen::Vector3d::UnitZ());
   for (const ImuSample& s : imu->Until(end.time_since_epoch()))

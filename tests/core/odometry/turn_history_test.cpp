@@ -24,7 +24,8 @@ double YawOf(const Eigen::Quaterniond& turn) {
 void AddSteadyTurn(Time from, Time to, double rate, TurnHistory* turns) {
   for (Time t = from; t <= to; t += kStep) turns->Add(t, {0, 0, rate});
 }
-/// Teaches ten scans of a turn at 1 rad/s, twice as fast as the last angular velocity.
+/// Adds a second with the angular velocity `measured`. Teaches ten scans in which the sensor turned
+/// at 1 rad/s, although half of that was predicted.
 void TeachTurns(double measured, TurnHistory* turns) {
   AddSteadyTurn(Time{}, Time{} + seconds(1), measured, turns);
   for (int i = 0; i < 10; ++i)
@@ -42,7 +43,8 @@ TEST(TurnHistory, AddsUpATurn) {
 TEST(TurnHistory, FollowsARateThatRises) {
   TurnHistory turns;
   for (int i = 0; i <= 100; ++i) turns.Add(Time{} + i * kStep, {0, 0, 0.01 * i});
-  // The integral of the time from 0.203 s to 0.208 s, between two samples.
+  // The expected turn is the integral of the time from 0.203 s to 0.208 s. Both limits are between
+  // two samples.
   const auto turn = turns.Between(Time{} + milliseconds(203), Time{} + milliseconds(208));
   ASSERT_TRUE(turn);
   EXPECT_NEAR(YawOf(*turn), (0.208 * 0.208 - 0.203 * 0.203) / 2, 1e-9);
@@ -116,7 +118,7 @@ TEST(TurnHistory, BelievesNoBiasThatNoGyroscopeHas) {
   EXPECT_LE(turns.bias().norm(), 0.2 + 1e-9);
 }
 
-/// A sensor on a road with five bumps a second, at 10 m/s.
+/// A sensor that drives at 10 m/s on a road with five bumps per second.
 struct BumpyRoad {
   static constexpr double kTurns = 31.4;  // [rad/s]
   static constexpr double kHeight = 0.04;
@@ -128,7 +130,7 @@ struct BumpyRoad {
     at.velocity.head<3>() << 10, 0, kHeight * kTurns * std::cos(kTurns * t);
     return at;
   }
-  /// Drives with an accelerometer whose third axis is multiplied by `axis`.
+  /// Drives along the road. The third axis of the accelerometer is wrong by the factor `axis`.
   static void Drive(double axis, TurnHistory* turns) {
     for (int i = 0; i <= 1000; ++i) {
       const double t = 0.002 * i;
@@ -158,7 +160,8 @@ TEST(TurnHistory, FollowsBumpsByTheirForcesInBothDirectionsOfTime) {
 }
 
 TEST(TurnHistory, TurnsForcesWithTheSensor) {
-  // A circle of 5 m at 10 m/s, in the plane of the first two axes.
+  // The sensor drives on a circle with a radius of 5 m at 10 m/s, in the plane of the first two
+  // axes.
   TurnHistory turns;
   const auto at = [](double t) {
     Moving state;
