@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A cloud is the same in every encoding that a file may have.
+// Tests that a cloud is read equally from each encoding that a file may have.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -13,20 +13,22 @@ namespace lidar {
 namespace {
 
 struct EncodedField {
-  std::string name;  // _: padding
-  char type;         // of PCD
+  std::string name;  // "_" is padding
+  char type;         // the type in PCD
   std::uint32_t size;
   std::uint32_t count;
 };
 
-/// Fields of every type, arrays whose count is not their element's size, and padding.
+/// Returns fields of each type, arrays whose count differs from the size of their elements, and
+/// padding.
 std::vector<EncodedField> AllFields() {
   return {{"x", 'F', 4, 1}, {"y", 'F', 4, 1},     {"z", 'F', 4, 1}, {"_", 'U', 1, 3},
           {"a", 'I', 1, 2}, {"b", 'U', 2, 4},     {"c", 'I', 2, 1}, {"d", 'U', 4, 2},
           {"e", 'I', 4, 3}, {"stamp", 'F', 8, 2}, {"f", 'U', 1, 1}, {"_", 'U', 1, 2}};
 }
 
-/// The `k`-th number of a point. All numbers differ, and fit each type.
+/// Returns the number with the index `k` in a point. All numbers of a cloud differ, and each number
+/// fits each type.
 int NumberAt(int point, int k) { return 25 * point + k + 1; }
 
 void PutNumber(int value, char type, std::uint32_t size, std::vector<std::uint8_t>* out) {
@@ -61,7 +63,7 @@ Encodings Encode(int points) {
   return all;
 }
 
-/// Encodes LZF of literals only.
+/// Compresses the bytes by LZF, with literals only.
 std::string Packed(const std::string& bytes) {
   std::string lzf;
   for (std::size_t at = 0; at < bytes.size(); at += 32) {
@@ -158,7 +160,8 @@ TEST(PlyElements, OnlyTheFirstVerticesCount) {
 
 TEST(CaptureTimeOfAFile, IsSecondsAndNineDigitsOrNone) {
   const auto of = [](const std::string& time, bool ply) {
-    const char* mark = ply ? "comment " : "# ";  // other comments stand around it
+    // The capture time is in the middle of other comments.
+    const char* mark = ply ? "comment " : "# ";
     const std::string comment = "of a sensor\n" + std::string(mark) +
                                 "capture time [s since 1970-01-01T00:00:00Z]: " + time + "\n" +
                                 mark + "made by hand\n";
@@ -183,7 +186,8 @@ TEST(CaptureTimeOfAFile, IsSecondsAndNineDigitsOrNone) {
   }
 }
 
-/// Headers that claim more than a file can hold, or that have impossible fields.
+/// The headers claim more data than a file may have, or have impossible fields. They are refused
+/// whatever follows.
 TEST(ClaimsOfHeaders, AreRefusedBeyondTheirLimitsHoweverTheFileGoesOn) {
   const auto pcd = [](const std::string& size, const std::string& count) {
     const std::string file =
@@ -204,7 +208,7 @@ TEST(ClaimsOfHeaders, AreRefusedBeyondTheirLimitsHoweverTheFileGoesOn) {
     return read ? "" : why;
   };
   EXPECT_EQ(vertices("0"), "");
-  EXPECT_EQ(vertices("1073741824"), "the file ends before its last point");  // a GiB
+  EXPECT_EQ(vertices("1073741824"), "the file ends before its last point");  // one GiB
   EXPECT_EQ(vertices("1073741825"), "the cloud is larger than 1 GiB");
   for (const char* count : {"2147483648", "4294967296", "18446744073709551616", "-1", "x"})
     EXPECT_NE(vertices(count).find("vertices"), std::string::npos) << count;

@@ -34,7 +34,7 @@ std::string PcdHeader(const std::string& data, int width = 2, int height = 1) {
          "\n";
 }
 
-/// Two points as in PcdHeader(): x, y, z, two bytes of padding, ring.
+/// Returns two points in the layout of PcdHeader(): x, y, z, two bytes of padding and ring.
 std::vector<std::uint8_t> TwoPoints() {
   std::vector<std::uint8_t> bytes;
   ByteWriter w(&bytes);
@@ -54,7 +54,7 @@ void ExpectTwoPoints(const std::optional<FileCloud>& cloud) {
   EXPECT_EQ(cloud->width, 2U);
   EXPECT_EQ(cloud->height, 1U);
   EXPECT_EQ(cloud->point_step, 16U);
-  ASSERT_EQ(cloud->fields.size(), 4U);  // without the padding
+  ASSERT_EQ(cloud->fields.size(), 4U);  // does not count the padding
   EXPECT_EQ(cloud->fields[3], (PointField{"ring", FieldType::kU16, 14}));
   EXPECT_EQ(cloud->points, TwoPoints());
 }
@@ -72,14 +72,14 @@ TEST(Pcd, OfVersion05IsRead) {
 TEST(Pcd, BinaryIsRead) { ExpectTwoPoints(Pcd(PcdHeader("binary") + Text(TwoPoints()))); }
 
 TEST(Pcd, CompressedIsRead) {
-  // All x, then all y, ..., as literals of LZF.
+  // The order is all x, then all y, and so on. LZF encodes them as literals.
   const auto points = TwoPoints();
   std::string planes;
   for (const auto& [offset, size] :
        std::vector<std::pair<int, int>>{{0, 4}, {4, 4}, {8, 4}, {12, 2}, {14, 2}})
     for (int i = 0; i < 2; ++i)
       planes.append(points.begin() + 16 * i + offset, points.begin() + 16 * i + offset + size);
-  std::string lzf = "\x1F" + planes;  // 32 literals
+  std::string lzf = "\x1F" + planes;  // the code for 32 literals
   std::vector<std::uint8_t> sizes;
   ByteWriter w(&sizes);
   w.Le32(static_cast<std::uint32_t>(lzf.size()));
@@ -88,7 +88,7 @@ TEST(Pcd, CompressedIsRead) {
   lzf.back() = 0;
   EXPECT_TRUE(Pcd(PcdHeader("binary_compressed") + Text(sizes) + lzf));
   EXPECT_FALSE(Pcd(PcdHeader("binary_compressed", 3) + Text(sizes) + lzf));
-  sizes[4] = 31;  // less than the header needs, although the data suffice
+  sizes[4] = 31;  // less than the header needs, although the data would suffice
   EXPECT_FALSE(Pcd(PcdHeader("binary_compressed") + Text(sizes) + lzf));
   sizes[4] = 32;
   EXPECT_FALSE(Pcd(PcdHeader("binary_compressed") + Text(sizes) + lzf.substr(0, 20)));
@@ -104,7 +104,7 @@ TEST(Pcd, WithoutAPointIsReadInEachForm) {
 }
 
 TEST(Pcd, CompressedPointsRepeatWhatCameBefore) {
-  // A literal zero, then 79 copies of the byte before.
+  // The first two bytes are a literal zero. The others mean 79 copies of the byte before.
   const std::vector<std::uint8_t> lzf = {0, 0, 7 << 5, 70, 0};
   const auto file = [&lzf](std::uint32_t size) {
     std::vector<std::uint8_t> bytes;
@@ -280,7 +280,7 @@ TEST(Ply, SaysWhyItCannotBeRead) {
   }
 }
 
-/// A LAS file of two points; `x` in units of `scale` from `offset`.
+/// A LAS file of two points. The first has the x coordinate `x` * `scale` + `offset`.
 struct Las {
   std::uint8_t minor = 2;
   std::uint8_t format = 1;
@@ -348,7 +348,8 @@ TEST(Las, RecordsOfAllFormatsAreRead) {
     Las las;
     las.minor = format >= 6 ? 4 : 2;
     las.format = format;
-    las.step = static_cast<std::uint16_t>(kSteps[format] + format % 3);  // extra bytes, too
+    // Some records have extra bytes.
+    las.step = static_cast<std::uint16_t>(kSteps[format] + format % 3);
     const auto cloud = ReadLasFile(las.File());
     ASSERT_TRUE(cloud) << int{format};
     EXPECT_EQ(cloud->width, 2U);
@@ -376,7 +377,8 @@ TEST(Las, AClassIsReadWithoutTheFlagsBesideIt) {
     las.step = is_long ? 30 : 28;
     std::string file = las.File();
     const std::size_t classification = is_long ? 375 + 16 : 227 + 15;
-    file[classification] = static_cast<char>(0xE2);  // withheld, key point, synthetic; ground
+    // Sets the flags withheld, key point and synthetic, and the class ground.
+    file[classification] = static_cast<char>(0xE2);
     const auto cloud = ReadLasFile(file);
     ASSERT_TRUE(cloud);
     EXPECT_EQ(cloud->points[OffsetOf(*cloud, "classification")], is_long ? 0xE2 : 2);
@@ -388,7 +390,7 @@ TEST(Las, PointsOnAMapKeepTheirMillimetres) {
   las.offset = 5'400'000;
   const auto cloud = ReadLasFile(las.File());
   ASSERT_TRUE(cloud);
-  EXPECT_EQ(FloatAt(*cloud, 0), 0.5F);  // relative to an origin of 5,400,001
+  EXPECT_EQ(FloatAt(*cloud, 0), 0.5F);  // The origin of the cloud is 5,400,001.
   EXPECT_NEAR(FloatAt(*cloud, 28 + 4), 0.001F, 1e-6);
   EXPECT_EQ(FloatAt(*cloud, 8), 0.75F);
 }

@@ -121,7 +121,7 @@ TEST(PointFields, CoordinatesArePackedInTheirOrderOnly) {
   EXPECT_FALSE(packed("x:F32:0,y:F32:4"));
 }
 
-/// Each byte is as in docs/wire-format.md.
+/// Compares each byte with docs/wire-format.md.
 TEST(SensorModel, StandsOnTheWireAsDocumented) {
   SensorModel m;
   m.columns_per_scan = 0x0102;
@@ -193,7 +193,7 @@ TEST(SensorModel, RefusesEveryTruncationAndForeignVersions) {
   bytes.push_back(0);
   EXPECT_FALSE(SensorModel::Parse({bytes.data(), bytes.size()}));
   bytes.pop_back();
-  bytes[1] = 1;  // flags of a later version
+  bytes[1] = 1;  // flags of a later version of the format
   EXPECT_FALSE(SensorModel::Parse({bytes.data(), bytes.size()}));
   bytes[1] = 0;
   ASSERT_TRUE(SensorModel::Parse({bytes.data(), bytes.size()}));
@@ -208,7 +208,7 @@ TEST(SensorModel, RefusesNumbersThatAreNotFinite) {
   EXPECT_FALSE(SensorModel::Parse({bytes.data(), bytes.size()}));
 }
 
-// The SDK's lookup table, written out for one pixel.
+// Computes one entry of the lookup table of the Ouster SDK.
 std::array<double, 3> SdkPoint(const SensorModel& m, std::uint32_t beam, std::uint32_t column,
                                double r) {
   const double encoder = 2 * M_PI - 2 * M_PI * column / m.columns_per_scan;
@@ -245,7 +245,7 @@ using Xyz = std::array<float, 3>;
 
 class ProjectionWindows : public ::testing::TestWithParam<ColumnWindow> {
  protected:
-  /// Returns point `index`; a point takes 20 bytes.
+  /// Returns the position of the point `index`. Each point has 20 bytes.
   static Xyz PointAt(const std::vector<std::uint8_t>& points, std::size_t index) {
     Xyz p{};
     std::memcpy(p.data(), &points[index * 20], sizeof p);

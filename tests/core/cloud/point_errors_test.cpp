@@ -15,7 +15,8 @@ namespace {
 
 const PointFields kXyz = *PointFields::Parse("x:F32:0,y:F32:4,z:F32:8");
 
-/// Points two metres apart, so that a moved point is still nearest to where it was.
+/// Returns points that are two metres apart, so that the nearest point of a moved point is still
+/// the original one.
 std::vector<DecodedPoint> Lattice() {
   std::vector<DecodedPoint> points;
   for (unsigned i = 0; i < 500; ++i) {
@@ -26,7 +27,7 @@ std::vector<DecodedPoint> Lattice() {
   return points;
 }
 
-/// Returns points as the bytes of a buffer.
+/// Returns the bytes of `points` as they are in a buffer.
 std::vector<std::uint8_t> Raw(const std::vector<DecodedPoint>& points) {
   std::vector<std::uint8_t> raw(12 * points.size());
   for (std::size_t i = 0; i < points.size(); ++i)
@@ -103,7 +104,7 @@ TEST(PointErrors, OfAPointThatIsGoneIsTheDistanceToTheNextOneWhereTheyMayMerge) 
   EXPECT_DOUBLE_EQ(errors.max_m, 2);
 }
 
-/// A lattice with errors of up to 5 cm. Changed() mirrors or scales it.
+/// A lattice, and a copy of it with errors of up to 5 cm. Changed() mirrors or scales a cloud.
 class PointErrorsOf : public ::testing::TestWithParam<PointOrder> {
  protected:
   static std::vector<DecodedPoint> Changed(std::vector<DecodedPoint> points, float factor) {

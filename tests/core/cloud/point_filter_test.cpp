@@ -20,7 +20,8 @@ struct Point {
 
 PointFields Fields() { return *PointFields::Parse("x:F32:0,y:F32:4,z:F32:8,id:U32:12"); }
 
-/// 2 rows of 6 columns along x, from 1 m on; the last of the first row has no return.
+/// Returns 2 rows of 6 columns. The points of a row are on a line along x and begin at 1 m. The
+/// last point of the first row has no return.
 std::vector<Point> Cloud() {
   std::vector<Point> points;
   for (std::uint32_t i = 0; i < 12; ++i)
@@ -60,7 +61,7 @@ TEST(PointFilter, KeepsEveryNthRowAndColumnOfTheScan) {
   settings.beam_step = 2;
   settings.column_step = 2;
   EXPECT_EQ(Filter(settings).Ids(), (Ids{0, 2, 4}));
-  // The slice begins with column 3 of the scan. Columns 4, 6 and 8 of the scan stay.
+  // The slice begins with column 3 of the scan. Only the columns 4, 6 and 8 of the scan are kept.
   const auto slice = Filter(settings, Cloud(), 3);
   EXPECT_EQ(slice.Ids(), (Ids{1, 3, 5}));
   EXPECT_EQ(slice.first_column, 2U);
@@ -118,7 +119,7 @@ TEST(PointFilter, KeepsWhatLiesOnALimit) {
   cloud.resize(6);
   cloud.resize(12, {0, 0, 0, 99});
   EXPECT_EQ(Filter(settings, cloud).Ids(), (Ids{1, 2, 3}));
-  settings.max_range_m = 0;  // no limit
+  settings.max_range_m = 0;  // means that there is no limit
   EXPECT_EQ(Filter(settings, cloud).Ids(), (Ids{1, 2, 3, 4}));
   settings.min_range_m = 0;
   settings.crop_box = {{2, 0, 0, 3, 0, 0}};
@@ -140,7 +141,7 @@ TEST(PointFilter, RangeIsOfAllThreeCoordinates) {
   settings.invalid = InvalidPoints::kRemove;
   settings.max_range_m = 6.9;
   auto cloud = std::vector<Point>(12, {0, 0, 0, 99});
-  cloud[0] = {2, 3, 6, 0};  // 7 m away
+  cloud[0] = {2, 3, 6, 0};  // at a range of 7 m
   cloud[1] = {2, 3, 5, 1};
   EXPECT_EQ(Filter(settings, cloud).Ids(), (Ids{1}));
   settings.min_range_m = 6.3;
@@ -156,8 +157,8 @@ TEST(PointFilter, VoxelsOnBothSidesOfZeroAreTwo) {
   cloud[1] = {-0.4F, 0, 0, 1};
   cloud[2] = {0.4F, -0.4F, 0, 2};
   cloud[3] = {0.4F, 0, -0.4F, 3};
-  cloud[4] = {0.6F, 0.1F, 0.1F, 4};  // in the voxel of 0
-  cloud[5] = {-0.6F, 0, 0, 5};       // in the voxel of 1
+  cloud[4] = {0.6F, 0.1F, 0.1F, 4};  // in the voxel of point 0
+  cloud[5] = {-0.6F, 0, 0, 5};       // in the voxel of point 1
   EXPECT_EQ(Filter(settings, cloud).Ids(), (Ids{0, 1, 2, 3}));
 }
 
@@ -170,18 +171,19 @@ TEST(PointFilter, EachCloudHasItsOwnVoxelsAndAllCountInWhatIsRemoved) {
   const CloudRows rows{reinterpret_cast<const std::uint8_t*>(cloud.data()), 6, 2, 0};
   for (std::uint64_t n = 1; n <= 2; ++n) {
     EXPECT_EQ(filter->Apply(rows).width, 1U);
-    EXPECT_EQ(filter->removed(), 10 * n);  // of eleven returns
+    EXPECT_EQ(filter->removed(), 10 * n);  // The cloud has eleven returns.
   }
 }
 
 TEST(PointFilter, LeavesNoColumnOfASliceBetweenTwoSteps) {
   PointFilterSettings settings;
   settings.column_step = 8;
-  const auto out = Filter(settings, Cloud(), 1);  // columns 1 to 6; the next that stays is 8
+  // The slice has the columns 1 to 6. The next column to be kept is 8.
+  const auto out = Filter(settings, Cloud(), 1);
   EXPECT_EQ(out.width, 0U);
   EXPECT_EQ(out.height, 2U);
   settings.column_step = 7;
-  const auto last = Filter(settings, Cloud(), 2);  // column 7, the last one
+  const auto last = Filter(settings, Cloud(), 2);  // Column 7 is the last column of the slice.
   EXPECT_EQ(last.Ids(), (Ids{5, 11}));
   EXPECT_EQ(last.first_column, 1U);
   settings.column_step = 1;
@@ -202,7 +204,8 @@ TEST(PointFilter, MovesPointsBeforeItCrops) {
 }
 
 TEST(PointFilter, APoseIsTheTransformOfItsQuaternion) {
-  // 2 * acos(0.5): a third of a turn about (1, 1, 1), which takes x to y to z to x.
+  // The angle is 2 * acos(0.5), a third of a turn, about (1, 1, 1). This moves x to y, y to z and z
+  // to x.
   const Transform t = FromPose({7, 8, 9}, {0.5, 0.5, 0.5, 0.5});
   EXPECT_EQ(t, (Transform{0, 0, 1, 7, 1, 0, 0, 8, 0, 1, 0, 9, 0, 0, 0, 1}));
   const double half = std::sqrt(0.5);
@@ -301,7 +304,7 @@ TEST(PointFilter, NumbersAreReadWithAPointWhateverLocaleTheProgramSets) {
 TEST(PointFilter, TransformsAreReadStrictly) {
   const auto rows = ParseTransform("1 2 3 4,5 6 7 8,9 10 11 12,0 0 0 1");
   EXPECT_EQ(rows, (Transform{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 0, 0, 0, 1}));
-  // Metres, then degrees about x, y and z; the turn about z comes last.
+  // The numbers are metres, and then degrees about x, y and z. The turn about z is applied last.
   const auto turned = ParseTransform("1,2,3, 90,0,90");
   ASSERT_TRUE(turned);
   const Transform expected = {0, 0, 1, 1, 1, 0, 0, 2, 0, 1, 0, 3, 0, 0, 0, 1};

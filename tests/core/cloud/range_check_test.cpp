@@ -25,7 +25,7 @@ SensorModel ModelOfCheck() {
   return model;
 }
 
-/// A slice whose points lie where their ranges put them.
+/// A slice in which the position of each point agrees with its range.
 class CheckedSliceOfRanges {
  public:
   explicit CheckedSliceOfRanges(std::uint32_t first_column)
@@ -79,11 +79,11 @@ TEST(RangeCheckOfPoints, FindsNothingWhereTheyAreAsTheirRangesSay) {
   }
 }
 
-/// The check looks at four pixels, the middle one of each quarter, or at the next one with a
-/// return.
+/// The check uses four pixels, the middle pixel of each quarter. If such a pixel has no return, the
+/// check uses the next pixel with a return.
 TEST(RangeCheckOfPoints, FindsOneThatWasMoved) {
   const RangeCheck check = MakeCheck();
-  constexpr std::uint32_t kFirst = 28;  // the slice goes over the end of the turn
+  constexpr std::uint32_t kFirst = 28;  // The slice extends beyond the end of the turn.
   for (const std::uint32_t point : {4U, 12U, 20U, 28U}) {
     for (const bool next : {false, true}) {
       CheckedSliceOfRanges slice(kFirst);

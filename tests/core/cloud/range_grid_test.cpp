@@ -58,7 +58,7 @@ TEST_P(GridErrors, AreReachedAndNeverPassed) {
     const auto grid = RangeGrid::OfParts(unit, RangeGrid::kParts + parts * 139);
     ASSERT_TRUE(grid.IsValid());
     std::uint32_t worst = 0;
-    // The pattern of bins repeats beyond these ranges.
+    // At larger ranges the pattern of the bins repeats.
     for (std::uint32_t r = unit; r < 26 * RangeGrid::kParts * unit; r += unit) {
       const std::uint32_t back = grid.RangeOf(grid.BinOf(r));
       ASSERT_GT(back, 0U) << "a return became a missing one";
@@ -75,7 +75,7 @@ TEST_P(GridErrors, StayWithinTheErrorAskedFor) {
     const auto grid = RangeGrid::ForError(error, unit);
     EXPECT_LE(grid.error_m(), error);
     EXPECT_GT(RangeGrid::OfParts(unit, grid.parts() + RangeGrid::kParts).error_m(), error);
-    // Any finer step keeps to the error as well.
+    // A grid with any finer step keeps to the error, too.
     for (std::uint32_t parts = RangeGrid::kParts; parts < grid.parts(); parts += 97)
       ASSERT_LE(RangeGrid::OfParts(unit, parts).error_m(), error + 1e-12) << parts;
   }

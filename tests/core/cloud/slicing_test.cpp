@@ -15,9 +15,9 @@ TEST(Slicing, AutomaticSweepsAreTwelveAndAHalfMilliseconds) {
 }
 
 TEST(Slicing, AutomaticSweepsAreTheNearestToThat) {
-  // 12 scans/s: 6.7 sweeps of 12.5 ms.
+  // At 12 scans/s, a scan has the duration of 6.7 sweeps of 12.5 ms.
   EXPECT_EQ(AutomaticSlices({1008, 128, std::chrono::microseconds(83'333)}), 7U);
-  // 15 scans/s: 5.3 sweeps.
+  // At 15 scans/s, a scan has the duration of 5.3 sweeps.
   EXPECT_EQ(AutomaticSlices({900, 128, std::chrono::microseconds(66'667)}), 5U);
 }
 

@@ -19,9 +19,9 @@ const double kHalf = std::sqrt(0.5);
 constexpr FramePose kNowhere{};
 
 FramePose At(double x, double y = 0, double z = 0) { return {{x, y, z}, {0, 0, 0, 1}}; }
-FramePose TurnedLeft(double x = 0) { return {{x, 0, 0}, {0, 0, kHalf, kHalf}}; }  // about z
+FramePose TurnedLeft(double x = 0) { return {{x, 0, 0}, {0, 0, kHalf, kHalf}}; }  // turned about z
 
-/// Where a point of the source is in the target.
+/// Returns the coordinates in the target frame of a point `p` in the source frame.
 std::array<double, 3> Place(const TransformTree::Answer& answer, std::array<double, 3> p) {
   const Transform t = answer.transform.value();
   std::array<double, 3> out{};
@@ -36,7 +36,7 @@ void ExpectNear(const std::array<double, 3>& a, const std::array<double, 3>& b) 
 
 class Tree : public ::testing::Test {
  protected:
-  /// map <- odom <- base <- lidar, and base <- camera.
+  /// The tree is map <- odom <- base <- lidar, and base <- camera.
   void SetUp() override {
     ASSERT_TRUE(tree_.Set("map", "odom", kStart, At(100), false));
     ASSERT_TRUE(tree_.Set("odom", "base", kStart, TurnedLeft(10), false));
@@ -61,12 +61,13 @@ TEST_F(Tree, WhatHoldsForGoodHoldsAtAnyTime) {
 TEST_F(Tree, BetweenTwoPosesItInterpolatesByTheShorterTurn) {
   ASSERT_TRUE(tree_.Set("map", "odom", kStart + milliseconds(100), At(102), false));
   FramePose turned = TurnedLeft(20);
-  turned.orientation = {0, 0, -1, 0};  // half a turn, by the other of its two quaternions
+  turned.orientation = {0, 0, -1, 0};  // half a turn, as the negative of the usual quaternion
   ASSERT_TRUE(tree_.Set("odom", "base", kStart + milliseconds(100), turned, false));
   const auto found = tree_.Find("map", "base", kStart + milliseconds(50));
   ExpectNear(Place(found, {0, 0, 0}), {116, 0, 0});
-  ExpectNear(Place(found, {1, 0, 0}), {116 - kHalf, kHalf, 0});  // 135 degrees
-  // Nearly equal orientations.
+  // The frame is turned by 135 degrees.
+  ExpectNear(Place(found, {1, 0, 0}), {116 - kHalf, kHalf, 0});
+  // The orientations may be nearly equal, too.
   TransformTree still;
   still.Set("a", "b", kStart, kNowhere, false);
   still.Set("a", "b", kStart + milliseconds(10), At(1), false);
@@ -134,7 +135,7 @@ TEST_F(Tree, KeepsPosesInTheOrderOfTheirTimes) {
   for (const auto& [ms, x] :
        {std::pair(5, 50), std::pair(10, 100), std::pair(15, 250), std::pair(20, 400)})
     EXPECT_NEAR(x_at(ms), x, 1e-9) << ms;
-  set(10, 200);  // in place of the first pose of that time
+  set(10, 200);  // replaces the first pose at this time
   for (const auto& [ms, x] :
        {std::pair(5, 100), std::pair(10, 200), std::pair(15, 300), std::pair(20, 400)})
     EXPECT_NEAR(x_at(ms), x, 1e-9) << ms;
@@ -152,7 +153,7 @@ TEST_F(Tree, APoseThatIsTooLateChangesNothing) {
   EXPECT_FALSE(tree_.Set("map", "odom", kStart - seconds(10), At(3), false));
   EXPECT_FALSE(tree_.Set("elsewhere", "odom", kStart - seconds(10), At(3), false));
   ExpectNear(Place(tree_.Find("map", "odom", kStart + milliseconds(500)), {0, 0, 0}), {150, 0, 0});
-  // Many old poses change nothing while newer ones come between them.
+  // Newer poses arrive between the old poses, so even many old poses change nothing.
   for (int i = 0; i < 100; ++i) {
     EXPECT_FALSE(tree_.Set("map", "odom", kStart - seconds(20) + milliseconds(i), At(3), false));
     EXPECT_TRUE(tree_.Set("map", "odom", kStart + seconds(1) + milliseconds(i), At(200), false));
@@ -166,7 +167,7 @@ TEST_F(Tree, AClockThatWentBackBeginsAnew) {
   for (int i = 0; i < kAgain; ++i)
     EXPECT_EQ(tree_.Set("map", "odom", again + milliseconds(10 * i), At(i), false), i == kAgain - 1)
         << i;
-  // All poses of the new time are there, and those of the old time are gone.
+  // The tree now has all poses of the new time. The poses of the old time are gone.
   ExpectNear(Place(tree_.Find("map", "odom", again + milliseconds(15)), {0, 0, 0}), {1.5, 0, 0});
   EXPECT_TRUE(tree_.Find("map", "odom", kStart).may_come);
 }
@@ -176,10 +177,10 @@ TEST_F(Tree, AClockThatWentBackIsSeenHoweverRareThePosesAre) {
   const Time again = kStart - seconds(100);
   for (int i = 0; i < kAgain; ++i)
     EXPECT_EQ(tree_.Set("map", "odom", again + seconds(2 * i), At(i), false), i == kAgain - 1) << i;
-  // Poses at the old time do not shorten the history.
+  // The poses at the old time are later, but must not make the tree forget poses of the new time.
   ExpectNear(Place(tree_.Find("map", "odom", again + seconds(9)), {0, 0, 0}), {4.5, 0, 0});
   EXPECT_FALSE(tree_.Find("map", "odom", again + seconds(7)).transform);
-  // Later poses may be any time apart.
+  // After the restart, any time may pass between two poses.
   for (int i = 0; i < 10; ++i)
     EXPECT_TRUE(tree_.Set("map", "odom", again + seconds(40 + 20 * i), At(i), false)) << i;
 }
@@ -187,17 +188,18 @@ TEST_F(Tree, AClockThatWentBackIsSeenHoweverRareThePosesAre) {
 TEST_F(Tree, AClockThatWentBackIsSeenWhateverThePosesHold) {
   constexpr auto kAgain = static_cast<int>(TransformTree::kRestart);
   const Time again = kStart - seconds(100);
-  // Equal stamps.
+  // All poses have the same stamp.
   for (int i = 0; i < kAgain; ++i)
     EXPECT_EQ(tree_.Set("map", "odom", again, At(i), false), i == kAgain - 1) << i;
   ExpectNear(Place(tree_.Find("map", "odom", again), {0, 0, 0}), {kAgain - 1., 0, 0});
-  // Two publishers that do not agree on the parent.
+  // Two publishers disagree on the parent of the frame.
   for (int i = 0; i < kAgain; ++i)
     EXPECT_EQ(tree_.Set(i % 2 == 0 ? "map" : "odom", "base", again + seconds(i), At(i), false),
               i == kAgain - 1)
         << i;
   ExpectNear(Place(tree_.Find("odom", "base", again + seconds(9)), {0, 0, 0}), {9, 0, 0});
-  // The times have no order. After the restart, poses too old for the newest one are refused.
+  // The stamps are not in order. After the restart, poses that are too old relative to the newest
+  // pose are refused.
   const Time earlier = again - seconds(100);
   for (int i = 0; i < 50; ++i)
     EXPECT_EQ(tree_.Set("map", "odom", earlier - seconds(11 * (i % 5)), At(i), false),
@@ -212,18 +214,19 @@ TEST_F(Tree, AClockThatWentBackTwiceLeavesNoPoseOfTheFirstTime) {
   };
   const Time first = kStart - seconds(20);
   set_old(first, kAgain - 1, 3);
-  ASSERT_TRUE(tree_.Set("map", "odom", kStart, At(100), false));  // the clock goes on
+  // The clock continues in the old time.
+  ASSERT_TRUE(tree_.Set("map", "odom", kStart, At(100), false));
   set_old(first + seconds(5), kAgain, 7);
   ExpectNear(Place(tree_.Find("map", "odom", first + seconds(5)), {0, 0, 0}), {7, 0, 0});
   EXPECT_FALSE(tree_.Find("map", "odom", first + seconds(1)).transform);
 }
 
 TEST_F(Tree, APoseForGoodTakesThePlaceOfAnyOther) {
-  // A driver that starts again may stamp its pose earlier.
+  // A driver that is restarted may send its pose with an earlier stamp.
   ASSERT_TRUE(tree_.Set("base", "lidar", kStart, At(2), true));
   ASSERT_TRUE(tree_.Set("base", "lidar", kStart - seconds(5), At(3), true));
   ExpectNear(Place(tree_.Find("base", "lidar", kStart), {0, 0, 0}), {3, 0, 0});
-  // A frame that begins to move has no pose before its first one.
+  // A frame that begins to move has no pose before the first moving pose.
   ASSERT_TRUE(tree_.Set("base", "lidar", kStart, At(4), false));
   ExpectNear(Place(tree_.Find("base", "lidar", kStart), {0, 0, 0}), {4, 0, 0});
   EXPECT_FALSE(tree_.Find("base", "lidar", kStart - seconds(1)).transform);
@@ -234,7 +237,8 @@ TEST_F(Tree, APoseForGoodTakesThePlaceOfAnyOther) {
 TEST_F(Tree, AFrameThatMovesToAnotherParentLeavesTheFirst) {
   ASSERT_TRUE(tree_.Set("odom", "lidar", kStart, At(7), false));
   ExpectNear(Place(tree_.Find("odom", "lidar", kStart), {0, 0, 0}), {7, 0, 0});
-  // No time lies between a pose in the first parent and one in the second.
+  // The frame has another parent from 2 s on. Between poses with different parents, the tree does
+  // not interpolate.
   ASSERT_TRUE(tree_.Set("map", "base", kStart + seconds(2), At(40), false));
   EXPECT_FALSE(tree_.Find("map", "base", kStart + seconds(1)).transform);
 }
