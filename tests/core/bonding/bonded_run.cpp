@@ -33,7 +33,7 @@ struct SliceLog {
   Time whole{};
 };
 
-/// One link: FIFO, congestion control, path and receiver.
+/// A simulated link with its FIFO, congestion control, path and receiver.
 class SimLink {
  public:
   SimLink(const LinkConfig& config, std::size_t index, std::size_t bottleneck)
@@ -67,7 +67,8 @@ class SimLink {
   }
 
   using Links = std::vector<std::unique_ptr<SimLink>>;
-  /// `reported`: the link whose reports come on this one.
+  /// Advances the link to the time `now`. The reports that arrive on this link are those of the
+  /// receiver of `reported`.
   void Step(Time now, Scheduler* scheduler, SimLink* reported, const Links& links) {
     while (auto report = reported->generator_.Take(now + reported->config_.receiver_clock))
       reports_.emplace(now + config_.rtt / 2, *report);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A stream over several simulated links: a controller each, the scheduler above them.
+// Simulates a stream over several links. Each link has a controller, and the scheduler distributes
+// the packets.
 #pragma once
 #include <functional>
 #include <vector>
@@ -17,18 +18,19 @@ struct LinkConfig {
   link::AqmConfig aqm{};
   link::QueueLimit limit{};
   link::PathConfig path{};
-  Duration receiver_clock{0};  // lead over the sender's clock
-  /// The link is reported to the scheduler as unusable in this time of the run.
+  Duration receiver_clock{0};  // how much it is ahead of the sender's clock
+  /// The time of the run in which the scheduler is told that the link is unusable.
   Duration unusable_from = Duration::max(), unusable_until = Duration::max();
 };
 
 struct RunConfig {
   std::vector<LinkConfig> links;
-  /// Each of two links reports what the other one received, from this time of the run on.
+  /// The time of the run from which each of two links reports the packets that the other link
+  /// received.
   Duration swapped_from = Duration::max();
-  /// All links share the first one's queue; only their round trips differ.
+  /// If true, all links share the queue of the first link and differ only in their round trips.
   bool one_bottleneck = false;
-  /// Competing flows on the first link.
+  /// The flows that compete with the first link.
   std::vector<scream::test::TcpConfig> others;
   Duration duration = std::chrono::seconds(60);
   Method method = Method::kAdaptive;
@@ -38,17 +40,19 @@ struct RunConfig {
 
 struct RunResult {
   std::uint64_t scans = 0;
-  std::uint64_t in_time = 0;        // scans of which each slice is whole 0.2 s after its capture
-  std::vector<double> latency_ms;   // of slices that arrive whole, sorted
-  std::vector<double> scan_age_ms;  // age of each scan when its last slice is whole; 1e9: never
-  std::int64_t media_bytes = 0;     // output of the encoder, headers included
-  std::vector<std::int64_t> link_bytes;  // sent on each link
-  std::int64_t other_bytes = 0;          // of competing flows, received
+  // The scans whose slices were all complete 0.2 s after their capture.
+  std::uint64_t in_time = 0;
+  std::vector<double> latency_ms;  // of each slice that arrived completely, sorted
+  // The age of each scan when its last slice was complete, or 1e9 if it never was.
+  std::vector<double> scan_age_ms;
+  std::int64_t media_bytes = 0;          // the output of the encoder, including headers
+  std::vector<std::int64_t> link_bytes;  // sent over each link
+  std::int64_t other_bytes = 0;          // received by the competing flows
   struct Target {
     Duration time;
     DataRate rate;
   };
-  std::vector<Target> targets;  // bitrates that the encoder was asked for
+  std::vector<Target> targets;  // the bitrates that were requested from the encoder
   std::vector<LinkCounters> counters;
 
   double Share() const { return static_cast<double>(in_time) / static_cast<double>(scans); }

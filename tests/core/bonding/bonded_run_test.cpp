@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A stream over simulated links, compared with what a sender that knew the links could deliver.
+// Compares a stream over simulated links with the stream of a sender that knows the links in
+// advance.
 #include "tests/core/bonding/bonded_run.h"
 
 #include <gtest/gtest.h>
@@ -24,7 +25,8 @@ link::Capacity Drive(std::uint64_t seed) {
   return *link::Capacity::ParseTrace(link::MakeDriveTrace(config), true, &error);
 }
 
-/// A source that stays at the coarsest step, which needs r_min, whatever the links carry.
+/// Returns a run whose source always uses the coarsest step. The rate of this source is r_min,
+/// whatever the links carry.
 RunConfig AtNeed(std::vector<LinkConfig> links) {
   RunConfig config;
   config.links = std::move(links);
@@ -45,7 +47,8 @@ double Bytes(const RunResult& r) {
 
 double Sent(const RunResult& r) { return Bytes(r) / static_cast<double>(r.media_bytes); }
 
-/// The first oracle knows the drives in advance, the second after a round trip.
+/// The first oracle knows the capacity of the links in advance. The second oracle learns it after a
+/// round trip.
 TEST(TwoLinkRun, ReachesTheBoundOverGeneratedDrives) {
   double sum = 0, sum_late = 0;
   for (std::uint64_t seed = 1; seed <= 19; seed += 2) {
@@ -136,8 +139,8 @@ TEST(TwoLinkRun, SendsLittleTwiceOnLinksThatAreSettled) {
   EXPECT_LE(adaptive, 0.6 * broadcast);
 }
 
-/// Feedback on a packet that both links carried does not show which link it is about. Broadcast
-/// sends all packets over both.
+/// If both links carried a packet, a report on the packet does not show which link it belongs to.
+/// Broadcast sends all packets over both links.
 TEST(TwoLinkRun, GoesOnWhereFeedbackIsSwapped) {
   for (const Method method : {Method::kAdaptive, Method::kBroadcast})
     for (const Duration from : {0s, 20s}) {
@@ -168,7 +171,7 @@ TEST(TwoLinkRun, GoesOnWhereALinkHasNoRoute) {
 struct Company {
   scream::test::TcpKind kind;
   double mbps;
-  double most = 1.2;  // times one link's share
+  double most = 1.2;  // as a multiple of the share of one link
 };
 class OneBottleneck : public testing::TestWithParam<Company> {};
 

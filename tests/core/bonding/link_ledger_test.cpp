@@ -13,7 +13,8 @@ using rtcp::CongestionFeedback;
 
 constexpr std::uint32_t kSsrc = 9;
 
-/// Reports which of `seq`, `seq` + 1, ... arrived.
+/// Returns a report on the packets `seq`, `seq` + 1, and so on. `arrived` says for each packet
+/// whether it arrived.
 CongestionFeedback ReportOf(std::uint16_t seq, const std::vector<bool>& arrived,
                             std::uint32_t ssrc = kSsrc) {
   CongestionFeedback feedback;
@@ -121,7 +122,7 @@ TEST(LinkLedger, ForgetsTheSourceThatIsSilentLongest) {
   LinkLedger ledger;
   for (std::uint32_t ssrc = 0; ssrc < LinkLedger::kMaxSources; ++ssrc)
     ledger.OnSent(kStart + ssrc * 1ms, {ssrc, 1});
-  ledger.OnSent(kStart + 1s, {0, 2});  // the first source still sends
+  ledger.OnSent(kStart + 1s, {0, 2});  // The first source is not silent.
   ledger.OnSent(kStart + 1s, {1'000, 1});
   EXPECT_EQ(ledger.OnFeedback(ReportOf(1, {true, true}, 0))->arrived.size(), 2U);
   EXPECT_TRUE(ledger.OnFeedback(ReportOf(1, {true}, 1))->arrived.empty()) << "the oldest one";

@@ -29,7 +29,7 @@ rtcp::CongestionFeedback Arrived(std::uint16_t seq) {
   return feedback;
 }
 
-/// Two links of 8 Mbit/s and 40 ms; each packet is a slice.
+/// Two links of 8 Mbit/s with a round trip of 40 ms. Each packet is a slice.
 class TwoLinks : public testing::Test {
  protected:
   TwoLinks() { SetPaths({Mbps(8), 40ms}, {Mbps(8), 40ms}); }
@@ -39,7 +39,8 @@ class TwoLinks : public testing::Test {
     scheduler_.OnPath(1, b);
   }
 
-  /// Sends a packet, which leaves at once on each of its links.
+  /// Passes a packet to the scheduler. Each link that the scheduler chose sends it at once. Returns
+  /// these links.
   LinkSet Packet() {
     const PacketId id{kMedia, ++seq_};
     const LinkSet links = scheduler_.OnPacket(now_, {id, kSize, seq_});
@@ -48,7 +49,7 @@ class TwoLinks : public testing::Test {
     return links;
   }
 
-  /// Both links deliver packets for `time`; the round trip takes no time.
+  /// Sends packets for `time`, one per `period`. Both links deliver and report them without delay.
   void Work(Duration time, Duration period = 12500us) {
     for (const Time end = now_ + time; now_ < end; now_ += period) {
       const LinkSet links = Packet();
@@ -57,8 +58,8 @@ class TwoLinks : public testing::Test {
     }
   }
 
-  /// Works until the links are settled and a copy was just sent, so that the next slice is not
-  /// copied.
+  /// Sends packets until the links are settled and a packet was just copied. The next slice is then
+  /// sent without a copy.
   void Settle() {
     Work(4s);
     LinkSet links;
@@ -93,7 +94,7 @@ TEST_F(TwoLinks, SendsASliceWhereItIsWholeFirst) {
   Settle();
   SetPaths({Mbps(8), 40ms}, {Mbps(8), 20ms});
   EXPECT_EQ(Packet(), SetOf({1})) << "by 10 ms sooner";
-  // A backlog in the FIFO of the nearer link makes that link deliver later.
+  // A backlog in the FIFO of the link with the shorter round trip makes this link deliver later.
   const std::uint32_t slice = ++seq_;
   for (int i = 0; i < 30; ++i) scheduler_.OnPacket(now_, {{kMedia, ++seq_}, kSize, slice});
   EXPECT_EQ(Packet(), SetOf({0}));
@@ -157,7 +158,7 @@ TEST_F(TwoLinks, CopiesWhatWaitsInAFifoForLongerThanExpected) {
   Settle();
   const PacketId id{kMedia, ++seq_};
   ASSERT_EQ(scheduler_.OnPacket(now_, {id, kSize, seq_}), SetOf({0}));
-  // A copy is due after 1.2 ms of sending, a round trip, and 20 ms.
+  // A copy is due after 61.2 ms: 1.2 ms for sending, a round trip, and 20 ms.
   EXPECT_TRUE(scheduler_.TakeCopies(now_ + 61ms).empty());
   EXPECT_FALSE(scheduler_.InGap(now_ + 62ms, 0)) << "nothing was sent that could be reported";
   const auto copies = scheduler_.TakeCopies(now_ + 62ms);
@@ -248,7 +249,7 @@ TEST(ThreeLinks, GetOneCopyOfWhatWasLostUntilThatIsOverdue) {
   EXPECT_EQ(scheduler.TakeCopies(kStart + 100ms).size(), 1U) << "on the third link";
 }
 
-/// Any link may leave its gap first.
+/// If each link is in a gap, nobody knows which link will deliver first.
 TEST(ThreeLinks, AllGetACopyOfWhatWaitsWhereEachIsInAGap) {
   for (const bool in_gap : {false, true}) {
     Scheduler scheduler(3, Method::kBackup);
@@ -269,7 +270,7 @@ TEST(ThreeLinks, AllGetACopyOfWhatWaitsWhereEachIsInAGap) {
     const LinkSet first = send(false);
     ASSERT_EQ(first.count(), 1U);
     const PacketId waits{kMedia, seq};
-    // The other links have a packet without a report, too, so each link is in a gap.
+    // The other links have a packet without a report, too. So each link is in a gap.
     for (std::size_t i = 0; i < 3 && in_gap; ++i)
       if (!first[i]) scheduler.OnSent(now, i, {kMedia + 1, static_cast<std::uint16_t>(i)});
     now += 61ms;
@@ -459,7 +460,7 @@ TEST(Scheduler, BroadcastsEveryPacketAndBacksUpOnlyWhatWaits) {
   Scheduler broadcast(3, Method::kBroadcast), backup(3, Method::kBackup);
   for (std::uint16_t seq = 1; seq < 8; ++seq) {
     EXPECT_EQ(broadcast.OnPacket(kStart, {{kMedia, seq}, kSize, seq}), SetOf({0, 1, 2}));
-    const Time now = seq == 1 ? kStart : kStart + 2s;  // all links are used at first
+    const Time now = seq == 1 ? kStart : kStart + 2s;  // At first, all links are used.
     const LinkSet links = backup.OnPacket(now, {{kMedia, seq}, kSize, seq});
     EXPECT_EQ(links.count(), seq == 1 ? 3U : 1U) << "the first of eight keeps links known";
   }
@@ -499,7 +500,7 @@ TEST(Scheduler, KeepsAllPacketsOfASliceTogether) {
     EXPECT_EQ(scheduler.OnPacket(kStart, {{kMedia, seq}, kSize, 2}), first);
 }
 
-/// Links whose packets pass FIFOs of 8 Mbit/s each.
+/// Links whose packets pass through FIFOs of 8 Mbit/s. Several links may share a FIFO.
 class LinksOfFifos {
  public:
   LinksOfFifos(std::vector<std::size_t> fifo_of_link, Method method,
@@ -518,7 +519,7 @@ class LinksOfFifos {
     report.blocks[0].metrics[0].arrival_offset = 0ms;
     scheduler_.OnFeedback(now_, link, report);
   }
-  /// Bursts that show which links share a FIFO.
+  /// Sends bursts of packets, which show the scheduler which links share a FIFO.
   void Burst() {
     for (int i = 0; i < 6000; ++i) {
       now_ += i % 20 == 0 ? 40ms : FromSeconds(0.0005 + 0.001 * random_.Uniform());
@@ -600,7 +601,7 @@ TEST(Scheduler, SparesNoLinkBesideOneThatIsDead) {
   for (std::uint32_t slice = 0; links.now_ < silent_since + 1s; ++slice, links.now_ += 5ms) {
     const PacketId id{kMedia, ++links.seq_};
     const LinkSet to = links.scheduler_.OnPacket(links.now_, {id, kSize, 100'000 + slice, false});
-    links.scheduler_.OnSent(links.now_, 0, id);  // no report of the packet follows
+    links.scheduler_.OnSent(links.now_, 0, id);  // This packet is not reported.
     const Duration silent = links.now_ - silent_since;
     EXPECT_TRUE(to[1] || silent < 300ms) << Seconds(silent);
     EXPECT_FALSE(to[1] && silent < 100ms) << Seconds(silent);

@@ -11,7 +11,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Two links whose packets pass FIFOs of 8 Mbit/s.
+/// Two links whose packets pass through one or two FIFOs of 8 Mbit/s.
 class TwoFifos : public testing::Test {
  protected:
   void Send(std::size_t link, std::size_t fifo, DataSize size) {
@@ -25,8 +25,8 @@ class TwoFifos : public testing::Test {
     changes_ += queues_.Shared(0, 1) != shared_ ? 1 : 0;
     shared_ = queues_.Shared(0, 1);
   }
-  /// Sends bursts on both links, at the same times if they are `copies`.
-  /// Otherwise the second link gets `share` of the packets.
+  /// Sends bursts on both links. If `copies` is true, both links get each packet at the same time.
+  /// Otherwise the second link gets `share` of the packets a bit later.
   void Run(std::size_t second_fifo, bool copies, double share = 0.4) {
     for (int i = 0; i < 4000; ++i) {
       now_ += i % 20 == 0 ? 40ms : FromSeconds(0.0005 + 0.001 * random_.Uniform());
@@ -38,12 +38,13 @@ class TwoFifos : public testing::Test {
   }
   SharedQueues queues_;
   bool shared_ = false;
-  int changes_ = 0;  // number of changes of `shared_`
+  int changes_ = 0;  // how often `shared_` changed
   Time now_ = kStart;
   std::array<Time, 2> free_{kStart, kStart};
-  std::array<Duration, 2> behind_{};  // delay of each link behind its queue
-  bool gaps_ = false;                 // the FIFOs stand still now and then
-  bool overtaken_ = false;            // packets arrive again behind later ones
+  std::array<Duration, 2> behind_{};  // the delay of each link after its queue
+  bool gaps_ = false;                 // The FIFOs stop from time to time.
+  // Each packet arrives a second time, as if later packets had overtaken it.
+  bool overtaken_ = false;
   link::Random random_{1};
 };
 
@@ -71,11 +72,12 @@ TEST_F(TwoFifos, FindsOneQueueThatStandsStillNowAndThen) {
 }
 
 TEST_F(TwoFifos, KnowsTheEmptyQueueOfTheWindowBeforeWhileOneStands) {
-  while (now_ < kStart + 9950ms) {  // the queue stays empty
+  while (now_ < kStart + 9950ms) {  // The queue stays empty.
     now_ += 50ms;
     for (const std::size_t link : {0U, 1U}) Send(link, 0, DataSize::Bytes(600));
   }
-  // A burst fills the queue, which then stays full while the next window of ten seconds begins.
+  // A burst fills the queue. The queue then stays full, also when the next window of ten seconds
+  // begins.
   while (free_[0] - now_ < 200ms) Send(0, 0, DataSize::Bytes(1200));
   while (now_ < kStart + 14s) {
     now_ += FromSeconds(0.003 + 0.002 * random_.Uniform());
@@ -92,9 +94,10 @@ TEST_F(TwoFifos, KeepsTwoQueuesApartThatCopiesFillAlike) {
 
 TEST_F(TwoFifos, TakesNoLittleLikenessForOneQueue) {
   for (int round = 0; round < 5; ++round) {
-    now_ = std::max(free_[0], free_[1]) + 1s;  // the queues are empty again
+    now_ = std::max(free_[0], free_[1]) + 1s;  // Both queues are empty again.
     const Time end = now_ + 8s;
-    // Both queues are 50 ms long, with packets of others between ours.
+    // Both queues are 50 ms long. They contain packets of other flows between the packets of the
+    // links.
     for (; now_ < end; now_ += FromSeconds(0.003 + 0.002 * random_.Uniform()))
       for (const std::size_t link : {0U, 1U})
         while (free_[link] - now_ < 50ms) {
@@ -130,7 +133,7 @@ TEST_F(TwoFifos, TakesNoOldSamplesForNewOnesWhereQueuesAreAlikeForAMoment) {
     Run(1, false, 0.8);
     EXPECT_FALSE(queues_.Shared(0, 1)) << seed;
   }
-  EXPECT_LE(changes_, 40);  // two for each seed are needed
+  EXPECT_LE(changes_, 40);  // Two changes per seed are needed.
 }
 
 }  // namespace
