@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Walks through a file record by record, by the specification (https://mcap.dev/spec) and without
-// our reader: what one record says of another must be true.
+// Reads a file record by record as the specification (https://mcap.dev/spec) says, without the
+// project's reader. Each statement of a record about other records must be true.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -18,7 +18,7 @@ using test::kSecond;
 struct Walked {
   std::uint8_t op = 0;
   std::uint64_t offset = 0;
-  std::uint64_t size = 0;  // with opcode and length
+  std::uint64_t size = 0;  // including opcode and length
   ByteView content;
 };
 
@@ -186,11 +186,11 @@ TEST_F(Layout, TheStatisticsCountWhatIsThere) {
   ASSERT_EQ(Of(11).size(), 1U);
   ByteReader r(Of(11)[0].content);
   EXPECT_EQ(r.Le64(), 25U);
-  EXPECT_EQ(r.Le16(), 2U);  // schemas
-  EXPECT_EQ(r.Le32(), 2U);  // channels: the third has no messages
+  EXPECT_EQ(r.Le16(), 2U);  // the number of schemas
+  EXPECT_EQ(r.Le32(), 2U);  // the number of channels; the third channel has no messages
   EXPECT_EQ(r.Le32(), 0U);
   EXPECT_EQ(r.Le32(), 0U);
-  EXPECT_EQ(r.Le32(), 3U);  // chunks
+  EXPECT_EQ(r.Le32(), 3U);  // the number of chunks
   EXPECT_EQ(r.Le64(), kSecond / 2);
   EXPECT_EQ(r.Le64(), 29 * kSecond / 10);
   EXPECT_EQ(Map(&r), indexed);

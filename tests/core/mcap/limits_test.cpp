@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// How far the reader trusts files that others wrote.
+// Tests how far the reader trusts files of other writers.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ ByteView ViewOf(const Bytes& bytes) { return {bytes.data(), bytes.size()}; }
 
 Bytes Begin() { return {kMagic.begin(), kMagic.end()}; }
 
-/// A channel `id` and a message of it.
+/// Returns the records of a schema, of the channel `id` and of a message on this channel.
 Bytes ChannelWithMessage(std::uint16_t id, std::uint64_t time) {
   Bytes records;
   Append(Schema{1, "s", "ros2msg", ""}, &records);
@@ -38,7 +38,7 @@ void AppendChunk(const Bytes& records, std::uint64_t time, Bytes* file) {
   Append(ChunkHeader{time, time, records.size(), 0, "", records.size()}, ViewOf(records), file);
 }
 
-/// A file of zeros except for its begin and its footer.
+/// A file of zeros, except for its first bytes and its footer.
 class HugeInput : public Input {
  public:
   explicit HugeInput(std::uint64_t summary_start) : begin_(Begin()) {
@@ -84,7 +84,7 @@ TEST(McapLimits, ASummaryOfAPetabyteIsNotRead) {
   EXPECT_LE(input.most(), kMaxSummary);
 }
 
-/// The end of a file whose summary holds `records`, without a checksum.
+/// Completes the file with a summary that consists of `records`. The summary has no checksum.
 void Close(const Bytes& records, Bytes* file) {
   AppendDataEnd(0, file);
   const std::uint64_t start = file->size();
@@ -103,7 +103,7 @@ TEST(McapOfOthers, AChunkThatClaimsMoreThanItsRecordHoldsIsPassedOver) {
   Bytes file = Begin();
   const std::uint64_t at = file.size();
   const Bytes records = ChannelWithMessage(1, 5);
-  // A reader that trusts this length reads on into the next record.
+  // A reader that trusts this length would continue to read in the next record.
   Append(ChunkHeader{5, 5, records.size() + 9, 0, "", 0}, ViewOf(records), &file);
   file[at + 41] = static_cast<std::uint8_t>(file[at + 41] + 9);
   AppendChunk(ChannelWithMessage(2, 6), 6, &file);
@@ -131,7 +131,8 @@ TEST(McapOfOthers, ChunksMayBeAsLargeAsTheLimitAndNoLarger) {
   }
 }
 
-/// Returns the index of a chunk of the time 5 that goes from `at` to the end of `file`.
+/// Returns the index of a chunk with the time 5. The chunk begins at `at` and ends at the end of
+/// `file`.
 ChunkIndex IndexOf(std::uint64_t at, const Bytes& file) {
   ChunkIndex index;
   index.start_time = index.end_time = 5;
@@ -171,7 +172,7 @@ TEST(McapOfOthers, AChunkIsReadOnceHoweverOftenItIsIndexed) {
     index.start_time = i % 6;
     Append(index, &summary);
   }
-  // An index of a chunk that begins within the first.
+  // This index claims that a second chunk begins within the first one.
   ChunkIndex inside = IndexOf(at + 9, file);
   Append(inside, &summary);
   Close(summary, &file);
@@ -246,7 +247,7 @@ TEST(McapOfOthers, ASummaryWhoseChecksumDoesNotFitIsNoIndex) {
   const auto a = maker.AddChannel("a");
   for (std::uint64_t i = 0; i < 3; ++i) ASSERT_TRUE(maker.Add(a, i * 2 * kSecond, "x"));
   ASSERT_TRUE(maker.writer().Finish());
-  const std::size_t summary = maker.ends()[2];  // behind the last chunk
+  const std::size_t summary = maker.ends()[2];  // the offset after the last chunk
   const Bytes& whole = maker.file();
   for (std::size_t at = summary + 40; at + 40 < whole.size(); at += 7) {
     Bytes file = whole;
@@ -272,7 +273,7 @@ TEST(McapOfOthers, ChannelsAndSchemasAreLearntOnceAndWithinALimit) {
     std::size_t offset = 0;
     return index.Learn(*NextRecord(ViewOf(bytes), &offset));
   };
-  EXPECT_FALSE(learn(0, 10));  // stands for no schema
+  EXPECT_FALSE(learn(0, 10));  // The id 0 means that there is no schema.
   EXPECT_TRUE(learn(1, 10));
   const std::uint64_t one = index.catalogue_size;
   EXPECT_GT(one, 10U);
@@ -363,7 +364,7 @@ TEST(McapOfOthers, AChannelWhoseMetadataAreCutIsNone) {
   Append(Channel{1, 1, "t", "cdr", {{"key", "value"}}}, &bytes);
   Bytes content(bytes.begin() + 9, bytes.end());
   ASSERT_TRUE(ParseChannel(ViewOf(content)));
-  content[content.size() - 9] = 6;  // the length of "value"
+  content[content.size() - 9] = 6;  // changes the length of "value"
   EXPECT_FALSE(ParseChannel(ViewOf(content)));
 }
 
@@ -385,7 +386,7 @@ TEST(Mcap, AChunkHoldsTheTimesOfItsMessagesWhateverTheirOrder) {
   FileMaker maker(WriterSettings{});
   const auto a = maker.AddChannel("a");
   for (const std::uint64_t time : {500U, 300U, 400U}) maker.Add(a, 10 * kSecond + time, "x");
-  EXPECT_EQ(maker.writer().chunks(), 0U);  // an earlier message does not end the chunk
+  EXPECT_EQ(maker.writer().chunks(), 0U);  // A message with an earlier time does not end the chunk.
   ASSERT_TRUE(maker.writer().Flush());
   maker.Add(a, kSecond, "x");
   ASSERT_TRUE(maker.writer().Finish());
@@ -425,7 +426,7 @@ TEST(Mcap, AnEndThatLostItsLastChunkIsAFailure) {
   ASSERT_TRUE(writer.Flush());
   ASSERT_TRUE(writer.Add({id, 0, 2, 2}, View("lost")));
   EXPECT_FALSE(writer.Finish());
-  EXPECT_EQ(pieces, 3);  // the end is still written
+  EXPECT_EQ(pieces, 3);  // The writer still writes the end of the file.
 }
 
 TEST(Mcap, ThereAreAsManyChannelsAsNumbersForThem) {

@@ -25,7 +25,7 @@ class Compressed : public ::testing::TestWithParam<Compression> {
   }
 };
 
-/// A recording of `count` messages of two topics, 100 ms apart.
+/// Records `count` messages, 100 ms apart, on two topics. Returns the messages.
 std::vector<Kept> Record(FileMaker* maker, int count, std::size_t size = 200) {
   const auto points = maker->AddChannel("points");
   const auto imu = maker->AddChannel("imu");
@@ -46,7 +46,7 @@ TEST_P(Compressed, AllMessagesComeBack) {
   const auto reader = Open(maker.file());
   ASSERT_NE(reader, nullptr);
   EXPECT_TRUE(reader->index().complete);
-  EXPECT_EQ(reader->index().chunks.size(), 5U);  // of a second each
+  EXPECT_EQ(reader->index().chunks.size(), 5U);  // Each chunk has one second.
   EXPECT_EQ(reader->index().start_time(), written.front().log_time);
   EXPECT_EQ(reader->index().end_time(), written.back().log_time);
   EXPECT_EQ(reader->index().channels.at(1).metadata.at("caps"), "of points");
@@ -72,14 +72,14 @@ TEST_P(Compressed, AFileThatBrokeOffGivesEveryWholeChunk) {
   FileMaker maker(Settings());
   const auto written = Record(&maker, 30, 20);
   ASSERT_TRUE(maker.writer().Finish());
-  const auto& ends = maker.ends();  // after three chunks and the index
+  const auto& ends = maker.ends();  // the sizes of the file after three chunks and after the index
   ASSERT_EQ(ends.size(), 4U);
   for (std::size_t size = kMagic.size(); size < maker.file().size(); ++size) {
     const auto reader =
         Open(Bytes(maker.file().begin(), maker.file().begin() + static_cast<long>(size)));
     ASSERT_NE(reader, nullptr);
     EXPECT_FALSE(reader->index().complete);
-    // A chunk is read without the message indexes that follow it.
+    // A chunk can be read even if the message indexes after it are missing.
     const auto whole = static_cast<std::size_t>(
         std::count_if(ends.begin(), ends.end() - 1, [&](std::size_t end) { return end <= size; }));
     const auto read = ReadAll(reader.get());
@@ -173,7 +173,8 @@ TEST(Mcap, ChunksThatOverlapAreMerged) {
   FileMaker maker(WriterSettings{});
   const auto a = maker.AddChannel("a");
   const auto b = maker.AddChannel("b");
-  // One topic is written before the other, as from files that are read one after the other.
+  // All messages of one topic are written before those of the other, as if two files had been read
+  // one after the other.
   for (std::uint64_t i = 0; i < 40; ++i) maker.Add(a, i * kSecond / 10, "a");
   for (std::uint64_t i = 0; i < 40; ++i) maker.Add(b, i * kSecond / 10 + 1, "b");
   ASSERT_TRUE(maker.writer().Finish());
@@ -206,7 +207,7 @@ TEST(Mcap, MessagesOutsideOfChunksAreRead) {
 TEST(Mcap, AFileWithoutASummaryIsAsLongAsItsChunks) {
   FileMaker maker(WriterSettings{});
   const auto a = maker.AddChannel("a");
-  // The newest message is written first.
+  // The newest message is written before the others.
   for (const std::uint64_t second : {7U, 3U, 5U}) {
     maker.Add(a, second * kSecond, "x");
     ASSERT_TRUE(maker.writer().Flush());
@@ -219,7 +220,8 @@ TEST(Mcap, AFileWithoutASummaryIsAsLongAsItsChunks) {
     EXPECT_EQ(reader->index().complete, finished);
     EXPECT_EQ(reader->index().start_time(), 3 * kSecond);
     EXPECT_EQ(reader->index().end_time(), 7 * kSecond);
-    EXPECT_EQ(reader->index().channels.count(a), 1U);  // known before a chunk is played
+    // The channel is known before a chunk is read.
+    EXPECT_EQ(reader->index().channels.count(a), 1U);
     const auto read = ReadAll(reader.get());
     ASSERT_EQ(read.size(), 3U);
     EXPECT_EQ(read[0].log_time, 3 * kSecond);
@@ -285,7 +287,7 @@ TEST(Mcap, AHugeChunkIsNotBelieved) {
   }
 }
 
-/// Golden bytes: those of the specification, not those of our reader.
+/// The expected bytes follow from the specification. They were not made by the project's writer.
 TEST(Mcap, RecordsAreThoseOfTheSpecification) {
   Bytes out;
   Append(MessageHeader{0x0102, 3, 4, 5}, test::View("hi"), &out);
@@ -305,7 +307,8 @@ TEST(Mcap, RecordsAreThoseOfTheSpecification) {
   EXPECT_EQ(out, chunk);
 }
 
-/// Bytes flipped anywhere never make more messages than there were, nor messages of a wrong size.
+/// If any bytes are damaged, the reader must return neither more messages nor messages of a wrong
+/// size.
 TEST(Mcap, DamageAnywhereIsSurvived) {
   FileMaker maker(WriterSettings{});
   Record(&maker, 30, 40);

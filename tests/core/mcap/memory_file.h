@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// MCAP files in memory.
+// Functions for MCAP files in memory.
 #pragma once
 #include <cstdint>
 #include <cstring>
@@ -13,7 +13,7 @@
 
 namespace lidar::mcap::test {
 
-constexpr std::uint64_t kSecond = 1'000'000'000;  // ns
+constexpr std::uint64_t kSecond = 1'000'000'000;  // in nanoseconds
 
 class MemoryInput : public Input {
  public:
@@ -34,7 +34,7 @@ inline std::unique_ptr<Reader> Open(Bytes file) {
   return Reader::Open(std::make_unique<MemoryInput>(std::move(file)), &why);
 }
 
-/// A message that a test keeps.
+/// A copy of a message that was read.
 struct Kept {
   std::string topic;
   std::uint64_t log_time = 0;
@@ -60,7 +60,7 @@ inline ByteView View(const std::string& text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
-/// Writes a file of one or more topics.
+/// Writes a file with one or more topics into memory.
 class FileMaker {
  public:
   explicit FileMaker(const WriterSettings& settings)
@@ -92,7 +92,7 @@ class FileMaker {
   }
   Writer& writer() { return writer_; }
   const Bytes& file() const { return file_; }
-  /// Returns the lengths of the file after each chunk.
+  /// Returns the size of the file after each write, in order. Each chunk is one write.
   const std::vector<std::size_t>& ends() const { return ends_; }
   void FillDisk() { full_ = true; }
   void FreeDisk() { full_ = false; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Recordings that are read while they are written.
+// Tests recordings that are read while they are being written.
 #include "src/mcap/playback.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 using test::FileMaker;
 using test::kSecond;
 
-/// Counts the calls of Read().
+/// An input that counts the calls of Read().
 class CountedInput : public test::MemoryInput {
  public:
   CountedInput(Bytes bytes, std::size_t* reads) : MemoryInput(std::move(bytes)), reads_(reads) {}
@@ -32,7 +32,7 @@ class CountedInput : public test::MemoryInput {
 
 class Growing : public lidar::test::FolderTest {
  protected:
-  /// Records a message a second, each in a chunk of its own.
+  /// Records messages one second apart. Each message has a chunk of its own.
   void Record(int from, int to) {
     for (int i = from; i < to; ++i) {
       ASSERT_TRUE(maker_.Add(channel_, Time(i), "message"));
@@ -65,7 +65,7 @@ TEST_F(Growing, ShowsWhatHasComeAfterARefresh) {
   ASSERT_NE(playback, nullptr) << why_;
   EXPECT_EQ(Count(playback.get()), 3U);
   Record(3, 5);
-  // The writer is in the middle of a chunk.
+  // The file ends within a chunk, because the writer has not finished it yet.
   Bytes part = maker_.file();
   part.resize(maker_.ends()[3] + 30);
   Save("a.mcap", part);
@@ -129,7 +129,7 @@ TEST_F(Growing, IsScannedAnewWhereAnotherFileHasItsName) {
   EXPECT_EQ(test::ReadAll(second.get()).size(), 30U);
 }
 
-/// Changes a byte in the middle of the first chunk.
+/// Returns `file` with a damaged byte in its first chunk.
 Bytes Damaged(Bytes file) {
   const ChunkPlace chunk = test::Open(file)->index().chunks.front();
   file[static_cast<std::size_t>(chunk.offset + chunk.size - 5)] ^= 0x55;
