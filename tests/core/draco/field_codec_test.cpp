@@ -13,7 +13,8 @@
 namespace lidar::draco {
 namespace {
 
-/// A stream of Draco 2.3 up to its attributes: three floats and one float a point.
+/// Returns the begin of a stream of Draco 2.3, up to its attributes. Each point has an attribute of
+/// three floats and one of a single float.
 std::vector<std::uint8_t> StreamOf(bool kd_tree) {
   std::vector<std::uint8_t> stream = {
       'D', 'R', 'A', 'C', 'O', 2, 3, 0, kd_tree ? std::uint8_t{1} : std::uint8_t{0}};
@@ -39,18 +40,18 @@ TEST(DracoCheck, TakesNumbersUpToTheirLimitsAndNoHeaderThatIsCutOff) {
                                  {4, {'O'}, {'0'}},            //
                                  {5, {2}, {1, 3}},             // version
                                  {6, {3}, {2, 4}},             //
-                                 {7, {0}, {1}},                // a mesh
+                                 {7, {0}, {1}},                // mesh
                                  {8, {}, {2, 255}},            // method
                                  {9, {0}, {1}},                // flags
-                                 {10, {0}, {0x80}},            // with metadata
-                                 {11, {5}, {0, 6}},            // points
+                                 {10, {0}, {0x80}},            // metadata
+                                 {11, {5}, {0, 6}},            // number of points
                                  {14, {0}, {1}},               //
-                                 {15, {1}, {0, 2}},            // decoders
-                                 {16, {2}, {0, 3}},            // attributes
-                                 {18, {1, 11}, {0, 12, 255}},  // type of the first one's numbers
-                                 {19, {1, 3}, {0, 4}},         // its numbers
-                                 {21, {0, 0x7F}, {0x80}},      // its id
-                                 {23, {1, 11}, {0, 12}},       // the same of the second one
+                                 {15, {1}, {0, 2}},            // number of decoders
+                                 {16, {2}, {0, 3}},            // number of attributes
+                                 {18, {1, 11}, {0, 12, 255}},  // number type, first attribute
+                                 {19, {1, 3}, {0, 4}},         // number count, first attribute
+                                 {21, {0, 0x7F}, {0x80}},      // id of the first attribute
+                                 {23, {1, 11}, {0, 12}},       // number type, second attribute
                                  {24, {1, 3}, {0, 4}},         //
                                  {26, {0, 0x7F}, {0x80}}};
   for (const bool kd_tree : {false, true}) {
@@ -69,7 +70,7 @@ TEST(DracoCheck, TakesNumbersUpToTheirLimitsAndNoHeaderThatIsCutOff) {
       EXPECT_FALSE(CheckDraco({stream.data(), size}, limits)) << size;
   }
   EXPECT_TRUE(is_taken(false, 11, 4));
-  // A tree has a level, bits of coordinates, and the number of points again.
+  // The header of a kd-tree has a level, the bits per coordinate, and the number of points again.
   const std::vector<Row> of_tree = {
       {11, {}, {4}}, {27, {0, 6}, {7}}, {28, {1, 32}, {0, 33}}, {29, {}, {1}}, {32, {}, {4, 6}}};
   for (const Row& row : of_tree) {
@@ -120,7 +121,7 @@ TEST(FieldCodec, KeepsTheOrderOfPointsWhateverTheTypes) {
   ASSERT_TRUE(DecodeFields({stream.data(), stream.size()}, layout, 100, &decoded));
   EXPECT_EQ(decoded, points);
   EXPECT_FALSE(DecodeFields({stream.data(), stream.size()}, layout, 99, &decoded));
-  // Other decoders find positions by Draco's type of the attribute.
+  // Other decoders find the positions by the type of the attribute in Draco.
   EXPECT_EQ(stream[17], ::draco::GeometryAttribute::POSITION);
   EXPECT_EQ(stream[22], ::draco::GeometryAttribute::GENERIC);
   for (const FieldType other : {FieldType::kI32, FieldType::kF64}) {
@@ -186,7 +187,8 @@ TEST(FieldCodec, TakesAFewEntriesOfMetadataOfTheCloudAloneWhereItIsAllowed) {
     stream.insert(stream.begin() + kFlags + 2, metadata.begin(), metadata.end());
     return CheckDraco({stream.data(), stream.size()}, {2, 1, 1, allowed}).has_value();
   };
-  // Attributes with metadata; entries, each a name and a value with their lengths; nested metadata.
+  // Metadata are the number of attributes with metadata, the entries, and the number of nested
+  // metadata. An entry has a name and a value, each after its length.
   const auto entries = [](std::uint8_t count) {
     Bytes metadata = {0, count};
     for (std::uint8_t i = 0; i < count; ++i)
@@ -198,11 +200,11 @@ TEST(FieldCodec, TakesAFewEntriesOfMetadataOfTheCloudAloneWhereItIsAllowed) {
     EXPECT_TRUE(is_taken(entries(count))) << int{count};
   EXPECT_FALSE(is_taken(entries(17)));
   EXPECT_FALSE(is_taken(entries(1), false));
-  EXPECT_FALSE(is_taken({1, 0, 0}));  // of an attribute
-  EXPECT_FALSE(is_taken({0, 0, 1}));  // nested
+  EXPECT_FALSE(is_taken({1, 0, 0}));  // metadata of an attribute
+  EXPECT_FALSE(is_taken({0, 0, 1}));  // nested metadata
 }
 
-// Descriptors of points have many numbers: FPFH has 33.
+// Descriptors of points have many numbers. FPFH has 33.
 TEST(FieldCodec, TakesAFieldOfAsManyNumbersAsDracoCounts) {
   for (const std::uint32_t count : {33U, 255U, 256U}) {
     FieldLayout layout;

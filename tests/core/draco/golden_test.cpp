@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Draco's coders give the bytes that they always gave; libdraco 1.5 wrote the files.
+// Tests that Draco's coders still write the bytes of the golden files. libdraco 1.5 wrote these
+// files.
 #include "tests/core/codec/golden.h"
 
 #include "ext/draco/draco_integers.h"

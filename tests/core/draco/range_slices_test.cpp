@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Range geometry by Draco's coders, and what decoders do with damaged streams of all of them.
+// Tests range geometry with Draco's coders. Also tests how the decoders of all of Draco's coders
+// handle damaged streams.
 #include <gtest/gtest.h>
 
 #include "ext/draco/draco_integers.h"
@@ -66,7 +67,7 @@ class HostileStreams : public ::testing::TestWithParam<StreamCase> {
   }
 };
 
-// Draco finds hardly any damage by itself: that is what the CRC of the payload format is for.
+// Draco itself notices hardly any damage. The CRC of the payload format is there for that.
 TEST_P(HostileStreams, OfAnyMutationGiveACloudWithinLimitsOrNone) {
   SliceDecoder decoder(test::RoomFormat(), GetParam().geometry, test::kHostileMaxPoints);
   test::CountDecodedMutations(Stream(), &decoder);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Slices in xyz geometry, from raw points to raw points, the odd ones above all.
+// Tests slices in xyz geometry from raw points to raw points, above all unusual slices.
 #include <draco/compression/decode.h>
 #include <draco/compression/encode.h>
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr std::uint32_t kMaxPoints = 1U << 20;
 
-/// x, y, z, intensity.
+/// The x, y, z and intensity of a point.
 using Point = std::array<float, 4>;
 using Points = std::vector<Point>;
 
@@ -47,7 +47,8 @@ struct Result {
   Points points = {};
 };
 
-/// Encodes and decodes in xyz geometry.
+/// Encodes the points in xyz geometry, decodes the slice, and returns the slice and the decoded
+/// points.
 Result Coded(const Points& points, const SliceSettings& settings) {
   auto encoder = *SliceEncoder::Create(PlainFormat(), Geometry::kXyz);
   const auto* raw = reinterpret_cast<const std::uint8_t*>(points.data());
@@ -64,7 +65,7 @@ Result Coded(const Points& points, const SliceSettings& settings) {
   return coded;
 }
 
-/// The largest distance from a point to the nearest of others.
+/// Returns the largest distance from one of `points` to the nearest of `others`.
 double LargestGap(const Points& points, const Points& others) {
   double largest = 0;
   for (const Point& point : points) {
@@ -75,7 +76,7 @@ double LargestGap(const Points& points, const Points& others) {
   return largest;
 }
 
-/// Returns points in the order of a sensor: ring by ring.
+/// Returns points on rings, one ring after the other, as a sensor orders them.
 Points Rings(std::size_t count) {
   Points points(count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -89,7 +90,7 @@ Points Rings(std::size_t count) {
 
 struct OddCloud {
   const char* name;
-  Points odd;  // among 500 usual points
+  Points odd;  // points that are inserted among 500 usual points
   std::size_t kept;
 };
 void PrintTo(const OddCloud& c, std::ostream* out) { *out << c.name; }
@@ -200,13 +201,13 @@ TEST(XyzSlices, ThatNoGridCanHoldAreSaidToBeOutOfReach) {
   Points points = Rings(10);
   points.push_back({10'000, 0, 0, 0});
   SliceSettings settings;
-  settings.max_error_m = 0.0005;  // a float there has steps of a millimetre
+  settings.max_error_m = 0.0005;  // Floats at 10 km are a millimetre apart.
   EXPECT_EQ(Coded(points, settings).result, SliceResult::kOutOfReach);
   points.back()[0] = 3e38F;
   EXPECT_EQ(Coded(points, {}).result, SliceResult::kOutOfReach);
 }
 
-/// Returns points along a line, a cell or two apart.
+/// Returns points on a curve. Neighbouring points are one or two cells apart.
 Points Line() {
   Points points(5'000);
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -231,7 +232,7 @@ TEST(XyzSlices, TakeTheSmallerOfDracosCodersForTheOrderGiven) {
   }
 }
 
-/// The sequential coder would need a table of all steps.
+/// With fine steps, the sequential coder would need a table of all steps.
 TEST(XyzSlices, OfFineStepsAreCodedInATree) {
   for (const double step : {1e-3, 1e-4, 5e-5, 1e-5}) {
     SliceSettings settings;
@@ -246,12 +247,13 @@ TEST(XyzSlices, OfFineStepsAreCodedInATree) {
   }
 }
 
-/// A tree repeats the number of points, and libdraco decodes the number in the tree.
+/// A tree has the number of points a second time. libdraco decodes as many points as the tree says.
 TEST(XyzSlices, WhoseTreeHasAnotherNumberOfPointsAreRefused) {
   SliceSettings settings;
   settings.step_m = 1e-5;
   const auto stream = Coded(Rings(700), settings).slice.bytes;
-  constexpr std::size_t kPointsOfTree = 27;  // behind the header, an attribute, level and bits
+  // The offset after the header, an attribute, the level and the bits.
+  constexpr std::size_t kPointsOfTree = 27;
   ASSERT_GT(stream.size(), kPointsOfTree);
   ASSERT_EQ(stream[kPointsOfTree], 700 % 256);
   for (const int more : {0, 1, -1}) {
@@ -278,7 +280,7 @@ TEST(XyzSlices, AreCodedByTheCoderThatWasTheSmallerOneUntilBothAreTriedAgain) {
   };
   const std::size_t smallest = encode(line, 7);
   EXPECT_EQ(smallest, encode(line, 0));
-  // Slices 1 to 63 take the sequential coder, and slice 64 the kd-tree.
+  // The encoder codes the slices 1 to 63 with the sequential coder, and slice 64 with the kd-tree.
   for (unsigned i = 1; i < 64; ++i) ASSERT_EQ(encode(line, 7), smallest) << i;
   const std::size_t in_a_tree = encode(shuffled, 7);
   EXPECT_LT(in_a_tree, encode(shuffled, 0));
