@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Bytes that tests of messages write and read.
+// Functions for the bytes that tests of messages write and read.
 #pragma once
 #include <cstdint>
 #include <vector>

@@ -52,7 +52,7 @@ TEST(Messages, ImuComesBack) {
   EXPECT_EQ(imu->angular_velocity, AnImu().angular_velocity);
   EXPECT_EQ(imu->linear_acceleration, AnImu().linear_acceleration);
   EXPECT_EQ(imu->linear_acceleration_covariance, AnImu().linear_acceleration_covariance);
-  // Header, then 37 doubles aligned to 8.
+  // The message has 4 bytes of encapsulation, a header, and 37 doubles that are aligned to 8 bytes.
   EXPECT_EQ(bytes.size(), 4u + 16 + 37 * 8);
 }
 
@@ -91,7 +91,7 @@ void ExpectTheHeader(CdrReader* r) {
   EXPECT_EQ(r->Text(), "map");
 }
 
-// The order of the members is that of ROS 2's .msg files.
+// The members have the order of the .msg files of ROS 2.
 
 TEST(Messages, ImuHasTheOrderOfItsDefinition) {
   Imu imu = AnImu();
@@ -200,7 +200,7 @@ TEST(CodedSlices, ANegativeDurationIsNone) {
   CodedSlice slice;
   Bytes bytes = WriteCodedSlice(slice);
   EXPECT_FALSE(ReadCodedSlice(View(bytes))->duration);
-  // The duration follows the stamp and an empty frame: seconds, then nanoseconds.
+  // The duration is after the stamp and an empty frame id. It has seconds, and then nanoseconds.
   EXPECT_EQ(Bytes(bytes.begin() + 20, bytes.begin() + 28),
             (Bytes{0xFF, 0xFF, 0xFF, 0xFF, 0, 0, 0, 0}));
   slice.duration = Duration{0};
@@ -211,7 +211,7 @@ TEST(CodedSlices, ANegativeDurationIsNone) {
   slice.duration = Duration::max();
   EXPECT_EQ(ReadCodedSlice(View(WriteCodedSlice(slice)))->duration,
             std::chrono::seconds(INT32_MAX));
-  // The nanoseconds of a duration are at most 999,999,999.
+  // The nanoseconds of a duration may be 999,999,999 at most.
   bytes[24] = 0x00, bytes[25] = 0xCA, bytes[26] = 0x9A, bytes[27] = 0x3B;
   EXPECT_FALSE(ReadCodedSlice(View(bytes))->duration);
   bytes[24] = 0xFF, bytes[25] = 0xC9;
@@ -242,7 +242,7 @@ TEST(Messages, TruncatedOnesAreRefusedAtEachLength) {
 
 TEST(Messages, ASequenceLongerThanItsMessageTakesNoMemory) {
   Bytes bytes = WriteTransforms(TwoTransforms());
-  bytes[7] = 0x40;  // claims 2^30 more transforms
+  bytes[7] = 0x40;  // claims that there are 2^30 more transforms
   EXPECT_FALSE(ReadTransforms(View(bytes)));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Messages with clouds that are not PointCloud2.
+// Tests messages whose clouds are not PointCloud2.
 #include <gtest/gtest.h>
 
 #include "src/cdr/point_cloud2.h"
@@ -8,7 +8,7 @@
 namespace lidar::cdr {
 namespace {
 
-/// A message as livox_ros_driver2 writes it.
+/// Returns a message in the format of livox_ros_driver2.
 Bytes LivoxMessage(std::uint32_t points) {
   Bytes message;
   CdrWriter w(&message);

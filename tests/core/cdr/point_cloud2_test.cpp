@@ -34,7 +34,7 @@ T Get(const Bytes& bytes, std::size_t offset) {
   return value;
 }
 
-/// x, y, z, intensity as F32 and a ring as U16, 18 bytes.
+/// Returns a layout of 18 bytes per point: x, y, z and intensity as F32, and ring as U16.
 RosLayout Velodyne(std::uint32_t width, std::uint32_t height) {
   return {height,
           width,
@@ -159,7 +159,7 @@ TEST(PointConverter, TakesThePaddingOfRowsOut) {
 TEST(PointConverter, TakesNoPaddingThatRowStepDoesNotSay) {
   PointCloud2 cloud;
   cloud.layout = {2, 1, {{"x", 0, kRosU8, 1}}, false, 2, 4};
-  const Bytes points(10);  // rows of 5
+  const Bytes points(10);  // two rows of 5 bytes
   cloud.data = View(points);
   EXPECT_FALSE(RowStride(cloud));
   EXPECT_FALSE(Convert(cloud));
@@ -250,14 +250,15 @@ TEST(PointConverter, GivesWhatIsWanted) {
   EXPECT_EQ((*out)[0], 77);
   EXPECT_EQ((*out)[1], 0);
   EXPECT_EQ(Get<double>(*out, 2), 1.);
-  EXPECT_EQ((*out)[10], 255);  // the nearest value that fits
+  EXPECT_EQ((*out)[10], 255);  // the value of U8 that is nearest to 300.6
   std::string why;
   EXPECT_FALSE(PointConverter::Make(cloud.layout,
                                     PointLayout{PointFields().Add("t", FieldType::kU32), 4}, &why));
   EXPECT_EQ(why, "there is no field t");
 }
 
-/// The same fields at other places: together, with a gap before the last, and in another order.
+/// The same fields are wanted at other offsets: without gaps, with a gap before the last field,
+/// with a gap before the first field, and in another order.
 TEST(PointConverter, PutsFieldsWhereTheyAreWanted) {
   PointCloud2 cloud;
   cloud.layout = {1,     2,  {{"x", 0, kRosF32, 1}, {"y", 4, kRosF32, 1}, {"i", 8, kRosF32, 1}},
@@ -343,7 +344,7 @@ TEST(PointConverter, RefusesLayoutsThatContradictThemselves) {
 }
 
 TEST(PointConverter, BoundsTheCloudsOfBothSides) {
-  constexpr std::uint32_t kQuarter = 1U << 28;  // of a GiB
+  constexpr std::uint32_t kQuarter = 1U << 28;  // a quarter of a GiB
   RosLayout layout = {1, kQuarter, {{"x", 0, kRosU8, 1}}, false, 4, 0};
   EXPECT_TRUE(PointConverter::Make(layout));
   layout.width += 1;
