@@ -250,7 +250,8 @@ TEST(RowFile, MovesWithItsFile) {
     from.stream() << "row\n";
     to = std::move(from);
   }
-  EXPECT_FALSE(std::filesystem::exists(other));  // the move closed it, and removed it as empty
+  // The move closed the empty file, which removed it.
+  EXPECT_FALSE(std::filesystem::exists(other));
   EXPECT_TRUE(to.ok());
   EXPECT_TRUE(to.Flush());
   EXPECT_EQ(std::filesystem::file_size(path), 4U);
@@ -259,7 +260,7 @@ TEST(RowFile, MovesWithItsFile) {
   last = RowFile(other);
   EXPECT_TRUE(std::filesystem::exists(other));
   last.Close();
-  EXPECT_FALSE(std::filesystem::exists(other));  // Close() removed it as empty
+  EXPECT_FALSE(std::filesystem::exists(other));  // Close() removed the empty file.
   EXPECT_TRUE(std::filesystem::exists(path));
   std::filesystem::remove(path);
 }
@@ -270,7 +271,7 @@ TEST(RowFile, SaysWhenTheDiskIsFull) {
   EXPECT_FALSE(full.Flush());
   EXPECT_FALSE(full.ok());
   full.Close();
-  EXPECT_TRUE(std::filesystem::exists("/dev/full"));  // no regular file
+  EXPECT_TRUE(std::filesystem::exists("/dev/full"));  // /dev/full is no regular file, so it stays.
 }
 
 TEST(Base64, PadsAsTheStandardSaysAndReadsLines) {

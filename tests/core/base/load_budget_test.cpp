@@ -8,8 +8,8 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// Returns the share of a processor that a budget allows for work of `cost` due each `period`, over
-/// 100 s.
+/// Offers work of `cost` to a budget once per `period` for 100 s. Returns the share of a processor
+/// that the allowed work takes.
 double Allowed(double load, milliseconds cost, milliseconds period) {
   LoadBudget budget;
   Duration spent{};

@@ -122,7 +122,7 @@ TEST(ScalarCaps, AnArrayHasAtMostSixteenDoubles) {
 }
 
 TEST(ScalarCaps, NestingIsRefusedHoweverDeep) {
-  // Each level doubles the time of gst_caps_from_string().
+  // With each level, the time of gst_caps_from_string() would double.
   for (const std::string level : {"[[ a, b={", "{", "\"", "("}) {
     std::string text = std::string(kSlice) + ", a=";
     for (int i = 0; i < 10'000; ++i) text += level;

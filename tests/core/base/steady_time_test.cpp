@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A caller's clock that is set back.
+// Tests that a clock that is set back does not move the time back.
 #include "src/base/steady_time.h"
 
 #include <gtest/gtest.h>

@@ -56,7 +56,7 @@ TEST(PointCloud, HasTimeFrameFieldsAndPoints) {
   EXPECT_EQ(encoded.points, 2U);
   ExpectTime(cloud);
   EXPECT_EQ(cloud.Text(2), "lidar");
-  EXPECT_EQ(cloud.Message(3).Message(2).Double(4), 1.0);  // w of no rotation
+  EXPECT_EQ(cloud.Message(3).Message(2).Double(4), 1.0);  // w of the identity quaternion
   EXPECT_EQ(cloud.Number(4), sizeof(Point));
   ASSERT_EQ(cloud.Count(5), 4U);
   EXPECT_EQ(cloud.Message(5, 3).Text(1), "intensity");
@@ -92,7 +92,8 @@ TEST(PointCloud, NamesTheTypeOfEachField) {
   ASSERT_TRUE(fields);
   const auto encoded = EncodePointCloud({}, {*fields, 40, 1, 1, {point.data(), point.size()}}, 0);
   const ProtoMessage cloud = Parse(encoded.message);
-  // PackedElementField.NumericType: UINT8 is 1, INT8 is 2, ..., FLOAT32 is 7, FLOAT64 is 8.
+  // In PackedElementField.NumericType, the types are UINT8 = 1, INT8 = 2 and so on to FLOAT32 = 7
+  // and FLOAT64 = 8.
   const std::vector<std::uint64_t> expected = {7, 7, 7, 1, 2, 3, 4, 5, 6, 8};
   ASSERT_EQ(cloud.Count(5), expected.size());
   for (std::size_t i = 0; i < expected.size(); ++i)
@@ -144,7 +145,7 @@ TEST(PointCloud, ThinsToTheMostPoints) {
   for (int i = 1; i <= 100; ++i) points.push_back({static_cast<float>(i), 0, 0, 0});
   const auto encoded = EncodePointCloud({}, View(points, 100), 30);
   const ProtoMessage cloud = Parse(encoded.message);
-  EXPECT_EQ(encoded.points, 25U);  // every fourth
+  EXPECT_EQ(encoded.points, 25U);  // every fourth point
   EXPECT_EQ(cloud.Text(6).size(), 25 * sizeof(Point));
   EXPECT_EQ(XOf(cloud, 1), 5.0F);
 }
@@ -206,7 +207,7 @@ TEST(Schemas, DescribeEachMessageAndWhatItNeeds) {
   ASSERT_EQ(set.Count(1), 2U);
   const ProtoMessage time = set.Message(1, 0);
   const ProtoMessage file = set.Message(1, 1);
-  EXPECT_EQ(file.Text(3), time.Text(1));  // a dependency comes first
+  EXPECT_EQ(file.Text(3), time.Text(1));  // A dependency is written first.
   EXPECT_EQ(file.Text(12), "proto3");
   std::vector<std::string> names;
   for (std::size_t i = 0; i < file.Count(4); ++i) names.push_back(file.Message(4, i).Text(1));

@@ -130,7 +130,7 @@ TEST(ServerInfo, SurvivesANameThatIsNoText) {
 TEST(ErrorStatus, HasTheLevelOfAnError) {
   const auto text = json::parse(ErrorStatus("no such channel"));
   EXPECT_EQ(text["op"], "status");
-  EXPECT_EQ(text["level"], 2);  // 0: information, 1: warning
+  EXPECT_EQ(text["level"], 2);  // an error; 0 is information, 1 is a warning
   EXPECT_EQ(text["message"], "no such channel");
 }
 

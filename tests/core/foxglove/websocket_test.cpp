@@ -150,7 +150,7 @@ TEST(Frames, OfTheServerAreWholeAndNotMasked) {
   EXPECT_EQ(CloseFrame(CloseCode::kGoingAway), (std::vector<std::uint8_t>{0x88, 2, 0x03, 0xE9}));
 }
 
-/// RFC 6455, section 5.2: the shortest of three forms of a length.
+/// RFC 6455, section 5.2, has three forms of a length, and requires the shortest one.
 TEST(Frames, TellTheirLengthInTheFewestBytes) {
   const auto head = [](std::uint64_t size) {
     std::vector<std::uint8_t> bytes;

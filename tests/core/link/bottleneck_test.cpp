@@ -13,7 +13,7 @@ Packet Sized(std::int64_t bytes, std::uint64_t id, Ecn ecn = Ecn::kEct1) {
   return {DataSize::Bytes(bytes), ecn, id};
 }
 
-/// 8 Mbit/s: a millisecond for 1000 bytes.
+/// Returns a link of 8 Mbit/s, which sends 1000 bytes in a millisecond.
 BottleneckConfig Simple() {
   BottleneckConfig c;
   c.origin = kStart;
@@ -21,7 +21,7 @@ BottleneckConfig Simple() {
   return c;
 }
 
-/// Delivers at the times that the link asks for, and returns every outcome.
+/// Calls Deliver() at each time that the link asks for. Returns the outcomes of all packets.
 std::vector<Outcome> Drain(Bottleneck* link) {
   std::vector<Outcome> all;
   while (link->NextEventTime() < Time::max())
@@ -94,7 +94,7 @@ TEST(Bottleneck, AnEmptyQueueTakesAPacketAboveItsLimit) {
   auto config = Simple();
   config.limit.bytes = DataSize::Bytes(500);
   Bottleneck link(config);
-  // The first packet is being sent, the second waits.
+  // The first packet is being sent. The second packet waits in the queue.
   for (std::uint64_t i = 0; i < 3; ++i) link.Enqueue(kStart, Sized(1000, i));
   EXPECT_EQ(link.stats().queue_full, 1U);
   EXPECT_EQ(link.queued(), DataSize::Bytes(1000));
@@ -173,7 +173,7 @@ TEST(Bottleneck, TheRampMarksInProportionToTheSojourn) {
   auto config = Simple();
   config.capacity = Capacity::Constant(Mbps(800));
   config.aqm = {AqmConfig::Kind::kRamp, 2ms, 10ms, {}};
-  // A standing queue of 5 ms marks 37.5 % of the packets.
+  // The queue delay stays at 5 ms, for which the ramp marks 37.5 % of the packets.
   Bottleneck link(config);
   int marked = 0;
   int counted = 0;

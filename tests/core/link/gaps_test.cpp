@@ -9,12 +9,13 @@ namespace lidar::link {
 namespace {
 using namespace std::chrono_literals;
 
-/// 8 Mbit/s with gaps in the second halves of the first and of the third second.
+/// Returns a link of 8 Mbit/s with two gaps: in the second half of the first second, and in the
+/// second half of the third second.
 Capacity TwoGaps() {
   return Capacity::Steps({Mbps(8), Mbps(0.2), Mbps(8), Mbps(8), Mbps(8), Mbps(0), Mbps(8)}, 500ms);
 }
 
-/// A packet each millisecond, from `from` on.
+/// Returns packets that are sent every millisecond from `from` to `until`, at `mbps` in all.
 std::vector<SentPacket> Sent(double mbps, Duration from, Duration until) {
   std::vector<SentPacket> packets;
   for (Duration t = from; t < until; t += 1ms) packets.push_back({t, Mbps(mbps) * Duration{1ms}});

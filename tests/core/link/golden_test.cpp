@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The fate of each packet of a fixed load, and what a sender that knows the link delivers.
+// Compares the fate of each packet of a fixed load, and the result of a sender that knows the link,
+// with golden files.
 #include <cmath>
 
 #include "src/link/bottleneck.h"
@@ -22,7 +23,8 @@ std::string Us(Duration t) {
   return t == Duration::max() ? "never" : std::to_string(std::llround(Seconds(t) * 1e6));
 }
 
-/// Sends bursts of packets of all ECN bits; the load is twice the capacity.
+/// Sends bursts of packets with each ECN codepoint at twice the capacity of the link. Returns the
+/// outcomes.
 Lines Played(const std::string& what, BottleneckConfig config) {
   static constexpr const char* kFates[] = {"", "lost", "queue full", "aqm dropped"};
   Lines lines = {"- " + what};

@@ -134,7 +134,7 @@ OracleConfig KnownAfter(Duration delay) {
   return config;
 }
 
-/// A slice must leave within 180 ms of its capture.
+/// A slice is in time if it is sent within 180 ms after its capture.
 TEST(OracleOfLinks, UsesALinkAgainWhenTheEndOfItsGapIsKnown) {
   const std::vector<Capacity> gap = {Trace("0 8\n2 0\n3 8")};
   EXPECT_EQ(AskOracleOfLinks(gap, KnownAfter(0ms)).complete, 91U) << "those from 2.9 s on";
@@ -143,8 +143,8 @@ TEST(OracleOfLinks, UsesALinkAgainWhenTheEndOfItsGapIsKnown) {
   EXPECT_EQ(AskOracleOfLinks(gap, KnownAfter(200ms)).complete, 89U) << "those from 3.1 s on";
 }
 
-/// Each slice is 17.5 kbit. Those of 2.0 to 2.0375 s are on the link when the gap is known at
-/// 2.04 s, and leave at its end. The slice of 2.05 s leaves after 2.14 s.
+/// Each slice has 17.5 kbit. The gap is known at 2.04 s. The slices from 2.0 to 2.0375 s are on the
+/// link by then, and are sent when the gap ends. The slice of 2.05 s is sent after 2.14 s.
 TEST(OracleOfLinks, HoldsSlicesThatAreMadeInAKnownGap) {
   const std::vector<Capacity> gap = {Trace("0 8\n2 0\n2.1 8")};
   const OracleResult late = AskOracleOfLinks(gap, KnownAfter(40ms));

@@ -22,8 +22,8 @@ struct Share {
   double mean_ms() const { return sojourn_ms / packets; }
 };
 
-/// Sends flows of 1000-byte packets that never slow down, each at `load` times 8 Mbit/s, for 20 s.
-/// Returns figures of the last 10 s.
+/// Sends the packets of `flows` for 20 s. Each flow sends packets of 1000 bytes at `load` times 8
+/// Mbit/s and never slows down. Returns the figures of the last 10 s.
 std::array<Share, 4> Overload(AqmConfig::Kind kind, std::vector<Ecn> flows, double load,
                               bool knows_l4s = true) {
   BottleneckConfig config;
@@ -53,7 +53,7 @@ TEST(PiController, RisesWhileTheQueueIsAboveItsTargetAndFallsBelow) {
   c.Update(kStart, 0ms);
   c.Update(kStart + 1s - 1ms, 30ms);
   const double high = c.p();
-  // 62 updates of 0.16 x 15 ms, and 3.2 x 30 ms once.
+  // The controller made 62 updates of 0.16 x 15 ms, and one update of 3.2 x 30 ms.
   EXPECT_NEAR(high, 62 * 0.16 * 0.015 + 3.2 * 0.030, 0.003);
   c.Update(kStart + 1500ms, 0ms);
   EXPECT_LT(c.p(), high - 0.09);
@@ -75,7 +75,8 @@ TEST(Pi2, DropsAsMuchAsAnOverloadOf10PercentNeedsToHoldItsTarget) {
 }
 
 TEST(Pi2, MarksEct1WithTwiceTheRootOfTheClassicSignal) {
-  // Both flows see the same p'. The drops of the classic flow keep the queue at its target.
+  // The same p' holds for both flows. The dropped packets of the classic flow keep the queue at its
+  // target.
   const auto s = Overload(AqmConfig::Kind::kPi2, {Ecn::kNotEct, Ecn::kEct1}, 0.525);
   const double p = std::sqrt(s[0].rate());
   EXPECT_NEAR(s[0].rate(), 2 - 2 / 1.05, 0.02);

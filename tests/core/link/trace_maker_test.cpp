@@ -20,7 +20,7 @@ Capacity Parse(const std::string& text) {
   return capacity.value_or(Capacity::Constant(Mbps(0)));
 }
 
-/// Lengths of the gaps [tenths of a second].
+/// Returns the lengths of the gaps in tenths of a second.
 std::vector<int> GapsOf(const Capacity& c, Duration duration) {
   std::vector<int> gaps;
   int length = 0;
@@ -35,7 +35,7 @@ std::vector<int> GapsOf(const Capacity& c, Duration duration) {
   return gaps;
 }
 
-class Drive : public ::testing::TestWithParam<std::uint64_t> {};  // seed
+class Drive : public ::testing::TestWithParam<std::uint64_t> {};  // the seed
 
 TEST_P(Drive, HasTheMeanTheGapsAndTheFadesOfMeasuredOnes) {
   DriveTraceConfig config;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// SCReAM sets a target, the rate controller spends it on slices, the link answers: nothing swings.
+// Tests that rates do not swing in the whole loop: SCReAM sets a target, the rate controller spends
+// the target on slices, and the link carries them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,9 +24,9 @@ using std::chrono::seconds;
 
 constexpr Time kOrigin{seconds(100)};
 constexpr double kScansPerSecond = 10;
-constexpr double kPayloadShare = 0.96;  // of a packet; the rest is headers
+constexpr double kPayloadShare = 0.96;  // of a packet is payload; the rest is headers
 
-/// Codes slices to a target, as dracoenc does.
+/// Encodes slices to a target rate, as dracoenc does.
 class Encoder {
  public:
   explicit Encoder(std::uint32_t slices)
@@ -33,7 +34,7 @@ class Encoder {
         codec_(CodecOf(slices)),
         controller_(Limits(), rate::MakeBuiltInModel(rate::RateModel::kAdaptive)) {}
 
-  /// The next slice.
+  /// Encodes the next slice. `wire` is the target, including headers.
   scream::test::EncodedFrame Next(DataRate wire) {
     controller_.SetTarget(wire * kPayloadShare);
     const auto features = codec_.Features(scan_, slice_);
@@ -56,7 +57,7 @@ class Encoder {
   static rate::SyntheticCodec::Parameters CodecOf(std::uint32_t slices) {
     rate::SyntheticCodec::Parameters p;
     p.slices = slices;
-    p.bits_per_return = 10;  // 6 Mbit/s at 1 cm
+    p.bits_per_return = 10;  // This is 6 Mbit/s at a step of 1 cm.
     return p;
   }
   static rate::ControllerParameters Limits() {
@@ -95,15 +96,15 @@ scream::test::SimulationConfig Path(link::Capacity capacity, std::uint32_t slice
   return config;
 }
 
-/// The variation of a rate about its mean.
+/// The variation of a rate. All fields except for the mean are relative to the mean.
 struct Swing {
   double mean_mbps = 0;
-  double deviation = 0;     // standard deviation, as a part of the mean
-  double peak_to_peak = 0;  // as a part of the mean; the largest in windows of up to 10 s
-  double tone = 0;          // amplitude of the strongest sine of 0.1 to 2 Hz, as a part of the mean
+  double deviation = 0;     // the standard deviation
+  double peak_to_peak = 0;  // the largest difference within 10 s
+  double tone = 0;          // the amplitude of the strongest sine wave from 0.1 to 2 Hz
 };
 
-/// `rates` were sampled every 100 ms.
+/// Returns the variation of `rates`, which were sampled every 100 ms.
 Swing Measure(const std::vector<double>& rates) {
   Swing s;
   const auto n = static_cast<double>(rates.size());
@@ -135,7 +136,7 @@ std::vector<double> Targets(const scream::test::SimulationResult& result, second
   return rates;
 }
 
-/// The rates that the encoder put out, scan by scan.
+/// Returns the rate that was delivered in each interval of 100 ms [Mbit/s].
 std::vector<double> Sent(const scream::test::SimulationResult& result, seconds from,
                          seconds until) {
   std::vector<double> rates;
@@ -174,7 +175,7 @@ TEST(Swing, IsSeenWhereThereIsOne) {
   EXPECT_NEAR(s.deviation, 0.05 / std::sqrt(2), 0.001);
 }
 
-class ClosedLoop : public ::testing::TestWithParam<std::uint32_t> {};  // slices a scan
+class ClosedLoop : public ::testing::TestWithParam<std::uint32_t> {};  // slices per scan
 
 TEST_P(ClosedLoop, OnAConstantLinkStandsStill) {
   const auto capacity = link::Capacity::Constant(DataRate::BitsPerSecond(8e6));
@@ -200,7 +201,7 @@ TEST_P(ClosedLoop, StandsStillAgainSoonAfterEveryStepOfTheLink) {
   const std::vector<DataRate> steps = {mbps(9), mbps(6), mbps(9), mbps(5), mbps(8), mbps(7)};
   const auto result = Simulate(Path(link::Capacity::Steps(steps, seconds(12)), GetParam(), true));
   for (int step = 1; step < 5; ++step) {
-    // SCReAM probes upwards for some seconds; after that the target is steady.
+    // After a step, SCReAM probes upwards for some seconds. The target is steady after that.
     const Swing target = Measure(Targets(result, seconds(12 * step + 6), seconds(12 * step + 12)));
     const Swing sent = Measure(Sent(result, seconds(12 * step + 6), seconds(12 * step + 12)));
     Print("target, after a step", target);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The whole loop over links with gaps, against a sender that knew the link.
+// Compares the whole loop over links with gaps with a sender that knows the link.
 #include <gtest/gtest.h>
 
 #include <utility>
@@ -50,7 +50,8 @@ TEST(Loop, AnEncoderThatDoesNotAdaptPutsOutTheCoarsestStep) {
 TEST(Loop, CountsTheScansThatWereLeftOutAndThoseThatArrived) {
   LoopCase c = Case("constant");
   c.source.slices = 8;
-  c.capacity = link::Capacity::Constant(Mbps(1));  // less than the coarsest step takes
+  // This is less than the rate of the coarsest step.
+  c.capacity = link::Capacity::Constant(Mbps(1));
   c.duration = 20s;
   const LoopRun run = RunLoop(c);
   const auto& frames = run.simulation.flows.front().frames;
@@ -82,7 +83,7 @@ TEST(Loop, TheSameRunGivesTheSameFigures) {
   EXPECT_EQ(a.capture_to_cloud_ms.p95, b.capture_to_cloud_ms.p95);
 }
 
-/// A run that must reach its goals. loop-matrix prints goals not met.
+/// A run that must reach its goal. loop-matrix also has runs that do not reach their goals.
 struct Held {
   const char* name;
   const char* trace;
@@ -120,7 +121,8 @@ INSTANTIATE_TEST_SUITE_P(
         Held{"drive_2", "drive_2", DegradationPreference::kMaintainAccuracy, 0.95},
         Held{"drive_3", "drive_3", DegradationPreference::kMaintainAccuracy, 0.97}));
 
-/// A camera at half of the priority gets 1 Mbit/s at least and costs hardly any scan.
+/// A camera that has half the priority of the scans gets at least 1 Mbit/s. Hardly any scan is lost
+/// for it.
 TEST(BesideACamera, ScansArriveAsFromASenderThatKnewTheLink) {
   const std::pair<const char*, double> goals[] = {
       {"gap_100ms_every_0.6s", 0.98}, {"gap_1s_every_10s", 0.975}, {"drive_3", 0.97}};
@@ -134,8 +136,9 @@ TEST(BesideACamera, ScansArriveAsFromASenderThatKnewTheLink) {
   }
 }
 
-/// An encoder at a fixed step has less data under way when a gap begins, so its scans after the gap
-/// arrive sooner. The test bounds its lead, counted in complete scans and in scans in time.
+/// When a gap begins, an encoder with a fixed step has less data on the way, so its scans arrive
+/// sooner after the gap. This test limits its lead in complete scans, and in scans that are in
+/// time.
 TEST(Loop, IsHardlyBehindAFixedStepWhereverATraceBegins) {
   constexpr int kStarts = 24;
   for (const char* trace : {"gap_1s_every_10s", "drive_1", "drive_2", "drive_3"}) {
@@ -155,12 +158,12 @@ TEST(Loop, IsHardlyBehindAFixedStepWhereverATraceBegins) {
   }
 }
 
-/// The data on a full link at the start of a gap leave first after it, so the next scan comes later
-/// than that of a stream that sends little.
+/// If the link is full when a gap begins, the data on the link are sent first after the gap. The
+/// next scan then arrives later than that of a stream with a low rate.
 TEST(Loop, AFullLinkCostsHardlyAScanOfAGap) {
   link::GapTraceConfig gaps;
   gaps.gap = 300ms;
-  gaps.every = 2070ms;  // meets scans at any phase
+  gaps.every = 2070ms;  // The gaps begin at any phase of a scan.
   LoopCase c = Case("gaps");
   std::string error;
   c.capacity = *link::Capacity::ParseTrace(MakeGapTrace(gaps), true, &error);
@@ -181,7 +184,7 @@ TEST(Loop, ALinkThatComesBackFasterIsSoonInUse) {
   EXPECT_LE(r.recovery_s.p50, 0.7);
 }
 
-/// A tenth of the capacity looks like a gap at first.
+/// At first, a drop to a tenth of the capacity looks like a gap.
 TEST(Loop, SettlesSoonOnALinkThatStaysSlow) {
   using link::Capacity;
   for (const std::uint32_t slices : {1U, 8U}) {
@@ -194,7 +197,8 @@ TEST(Loop, SettlesSoonOnALinkThatStaysSlow) {
   }
 }
 
-/// The time after a gap until the sender is back at 80 % of the capacity that it can use.
+/// The recovery time is the time from the end of a gap until the sender uses 80 % of the usable
+/// capacity.
 TEST(Loop, IsBackSoonAfterEveryGap) {
   for (const char* trace : {"gap_100ms_every_0.6s", "gap_100ms_every_2s", "gap_1s_every_10s"})
     EXPECT_LE(RunLoop(Case(trace)).report.recovery_s.max, 0.3) << trace;

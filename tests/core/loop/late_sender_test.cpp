@@ -36,7 +36,8 @@ TEST(LateSender, LosesTheScansOfAGap) {
       << "a second, less what is newest at its end";
 }
 
-/// A full link has more data on its way than a fixed step has, and that data must leave first.
+/// A sender that fills the link has more data on the way than a sender with a fixed step. These
+/// data must be sent first.
 TEST(LateSender, LosesMoreTheMoreOfTheLinkItUses) {
   std::string trace = "0 10";
   for (int s = 1; s < 60; ++s) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The type of packets in tests.
+// The type of packets in the tests of RTCP.
 #pragma once
 #include <cstdint>
 #include <vector>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// RFC 8888 on the wire.
+// Tests the bytes of the reports of RFC 8888.
 #include "src/rtcp/ccfb.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// A report of one SSRC: `count` packets from 100 on, all received, or all except the last.
+/// Returns a report on `count` packets of one SSRC, beginning with number 100. All packets are
+/// received, except for the last one if `last_received` is false.
 CongestionFeedback Report(std::size_t count, bool last_received = true) {
   CongestionFeedback f;
   f.sender_ssrc = 7;
@@ -75,7 +76,8 @@ TEST(Ccfb, AnAmbiguousPacketIsReadAsThePeersEarlierOnes) {
   EXPECT_EQ(parser.Parse(View(ambiguous))->blocks[0].metrics.size(), 3U);
   parser.Parse(View(BuildCcfb(Report(4), NumReports::kCountMinusOne)));
   EXPECT_EQ(parser.Parse(View(ambiguous))->blocks[0].metrics.size(), 4U);
-  parser.Parse(View(BuildCcfb(Report(4))));  // another peer, or the same in another version
+  // This report is from another peer, or from a new version of the same peer.
+  parser.Parse(View(BuildCcfb(Report(4))));
   EXPECT_EQ(parser.Parse(View(ambiguous))->blocks[0].metrics.size(), 3U);
 }
 
@@ -104,7 +106,8 @@ TEST(Ccfb, EveryTruncationAndEveryWrongHeaderIsRefused) {
     Bytes cut(good.begin(), good.begin() + static_cast<std::ptrdiff_t>(n));
     EXPECT_FALSE(CcfbParser().Parse(View(cut))) << n;
     if (n < 4 || n % 4 != 0) continue;
-    cut[3] = static_cast<std::uint8_t>(n / 4 - 1);  // a length that agrees
+    // The length agrees with the truncated packet.
+    cut[3] = static_cast<std::uint8_t>(n / 4 - 1);
     EXPECT_FALSE(CcfbParser().Parse(View(cut)) && n != 12) << n;
   }
   for (const std::size_t byte : {0U, 1U, 3U}) {
@@ -128,11 +131,12 @@ TEST(Ccfb, ACompoundIsSplitAndForeignPacketsAreLeftAlone) {
   EXPECT_TRUE(SplitRtcp(View(compound)).empty());
 }
 
-/// Returns `report` with `added` bytes of padding. The last byte claims that they are `said` bytes.
+/// Returns `report` with `added` bytes of padding. The last byte of the padding says that it has
+/// `said` bytes.
 Bytes Padded(Bytes report, std::size_t added, std::uint8_t said, std::uint8_t fill = 0x5A) {
   report[0] |= 0x20;
   report[3] = static_cast<std::uint8_t>(report[3] + added / 4);
-  report.insert(report.end(), added, fill);  // RFC 3550 says nothing of what is in it
+  report.insert(report.end(), added, fill);  // RFC 3550 does not specify the contents.
   report.back() = said;
   return report;
 }
@@ -150,7 +154,7 @@ TEST(Ccfb, ReadsAPaddedReportAsTheSameReport) {
 }
 
 TEST(Ccfb, RefusesPaddingThatLeavesNoReport) {
-  const Bytes plain = BuildCcfb(Report(2));  // 28 bytes, of which 20 are no block
+  const Bytes plain = BuildCcfb(Report(2));  // It has 28 bytes, 20 of which belong to no block.
   for (const int said : {0, 1, 2, 3, 5, 36, 200})
     for (const int fill : {0x5A, 0})  // zeros could be a block of no packets
       EXPECT_FALSE(CcfbParser().Parse(

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// When the receiver reports, and what.
+// Tests when the receiver sends a report, and what the report contains.
 #include "src/rtcp/feedback_generator.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ class FeedbackGeneratorTest : public ::testing::Test {
               std::uint32_t ssrc = 1) {
     generator_.OnPacket(now_, {ssrc, seq, ecn, marker, DataSize::Bytes(1000)});
   }
-  /// Takes the report that the very first packet calls for.
+  /// Receives the first packet and takes the report that is due for it at once.
   void Begin() {
     Arrive(0);
     ASSERT_TRUE(generator_.Take(now_));
@@ -74,7 +74,7 @@ TEST_F(FeedbackGeneratorTest, TheIntervalShrinksToFiveMillisecondsAtHighRate) {
   for (std::uint16_t seq = 0; seq < 2000; ++seq) {
     Arrive(seq);
     generator_.Take(now_);
-    now_ += 200us;  // 40 Mbit/s
+    now_ += 200us;  // This is 40 Mbit/s.
   }
   while (generator_.Take(now_)) {
   }
@@ -89,7 +89,7 @@ TEST_F(FeedbackGeneratorTest, TheIntervalShrinksToFiveMillisecondsAtHighRate) {
 TEST_F(FeedbackGeneratorTest, TheIntervalIsFiveMillisecondsAtLeast) {
   for (std::uint16_t seq = 0; seq < 5000; ++seq) {
     Arrive(seq);
-    now_ += 20us;  // 400 Mbit/s
+    now_ += 20us;  // This is 400 Mbit/s.
     while (generator_.Take(now_)) {
     }
   }
@@ -111,7 +111,7 @@ TEST_F(FeedbackGeneratorTest, AChangeToCeAndBackIsReportedNoFasterThanEveryFiveM
   now_ = kStart + 5ms;
   ASSERT_TRUE(generator_.Take(now_));
   now_ += 7ms;
-  Arrive(2, false, Ecn::kCe);  // no change
+  Arrive(2, false, Ecn::kCe);  // The packet before was marked, too.
   EXPECT_EQ(generator_.NextDue(), kStart + 45ms);
   Arrive(3);
   EXPECT_EQ(generator_.NextDue(), now_);
@@ -192,7 +192,7 @@ TEST_F(FeedbackGeneratorTest, OwesNothingForTheNumbersOfBeforeARestart) {
 TEST_F(FeedbackGeneratorTest, OwesNothingForASourceThatItWasToForget) {
   Begin();
   for (std::uint16_t seq = 1; seq <= 10; ++seq) Arrive(seq);
-  generator_.Forget(99);  // an unknown source
+  generator_.Forget(99);  // The source 99 is unknown.
   generator_.Forget(1);
   Arrive(500, true);
   const auto report = generator_.Take(now_);
@@ -278,7 +278,7 @@ TEST_F(FeedbackGeneratorTest, ReportsNeverOutweighWhatWasReceived) {
 
 TEST_F(FeedbackGeneratorTest, WhatDoesNotFitGoesIntoTheNextReport) {
   FeedbackConfig config;
-  config.max_report = DataSize::Bytes(100);  // 40 metrics
+  config.max_report = DataSize::Bytes(100);  // room for 40 metrics
   config.packets_per_feedback = 1000;
   config.report_on_marker = false;
   generator_ = FeedbackGenerator(config);

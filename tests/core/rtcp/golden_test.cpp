@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Each report of a fixed arrival of packets, with its bytes and the counters.
+// Compares each report of a fixed sequence of arrivals, with its size and the counters, with golden
+// files.
 #include <cmath>
 
 #include "src/rtcp/ccfb.h"
@@ -37,7 +38,7 @@ std::string Described(const CongestionFeedback& report) {
 
 const Time kBegin{1000s};
 
-/// Each millisecond, takes the reports that are due.
+/// A receiver that takes the due reports every millisecond.
 class Session {
  public:
   explicit Session(Lines* lines, const FeedbackConfig& config = {})

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The sender's report on the wire.
+// Tests the bytes of the sender's report.
 #include "src/rtcp/sender_report.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 
 using std::chrono::microseconds;
 
-constexpr std::size_t kAppAt = 8;  // behind the empty receiver report
+constexpr std::size_t kAppAt = 8;  // the offset after the empty receiver report
 
 SenderReport Sample() {
   SenderReport r;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Transport-wide feedback, back to packets.
+// Tests how transport-wide feedback is mapped to the packets of each stream.
 #include "src/rtcp/twcc_mapper.h"
 
 #include <gtest/gtest.h>
@@ -39,7 +39,7 @@ TEST_F(Mapper, FindsThePacketsOfTheNumbersAcrossTheWrap) {
 }
 
 TEST_F(Mapper, SaysNothingOfPacketsBetweenThoseOfTheReport) {
-  // Number 65535 belongs to another stream.
+  // The packet 65535 belongs to another stream.
   mapper.OnSent(65534, 100, 1);
   mapper.OnSent(0, 100, 5);
   const auto report = mapper.Map(Report({10ms, 11ms, 12ms}));

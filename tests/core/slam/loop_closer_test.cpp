@@ -60,7 +60,8 @@ TEST(LoopCloser, TakesADriveWithoutPoints) {
 
 TEST(LoopCloser, SearchesFartherAfterALongerWay) {
   LoopSettings settings;
-  settings.drift_m = -settings.local_map_m;  // only drift_share allows a distance
+  // The search distance then comes from drift_share only.
+  settings.drift_m = -settings.local_map_m;
   settings.drift_share = 0.1;
   LoopCloser closer(settings);
   AddDrive(Drive(kScansOfALap + 12), &closer);
@@ -76,12 +77,13 @@ TEST(LoopCloser, MovesTheMapAndNotTheOdometry) {
   EXPECT_LT(EndError(now), EndError(drifted) / 5);
 }
 
-/// Laps of the block with room for a few maps only.
+/// The drive has three laps around the block. There is room for hardly more maps than those of one
+/// lap.
 TEST(LoopCloser, BoundsItsMapsByForgettingThoseThatLieOverOthers) {
   const Points world = MakeWorld();
   const odometry::Trajectory drifted = Drive(3 * kScansOfALap);
   LoopSettings settings;
-  settings.most_maps = 11;  // a lap has 9
+  settings.most_maps = 11;  // A lap needs 9 maps.
   LoopCloser closer(settings);
   for (std::size_t i = 0; i < drifted.size(); ++i) {
     const int scan = static_cast<int>(i);
@@ -92,15 +94,16 @@ TEST(LoopCloser, BoundsItsMapsByForgettingThoseThatLieOverOthers) {
   EXPECT_LT(EndError(closer.Correct(drifted)), EndError(drifted) / 5);
 }
 
-/// The drive comes to the block along one map, makes a lap of ten maps, and repeats the lap's first
-/// map. The closer forgets the first map of the lap, because the last map lies on it.
+/// The drive begins with one map before the block, makes a lap of ten maps, and repeats the first
+/// map of the lap. The closer forgets the first map of the lap, because the last map is at the same
+/// place.
 TEST(LoopCloser, MovesTheClosureOfAForgottenMapToTheOneBefore) {
   constexpr int kScansOfAMap = kScansOfALap / 10;
   const Points world = MakeWorld();
   const double step_m = TrueAt(1).position.norm();
   LoopSettings settings;
   settings.local_map_m = (kScansOfAMap - 1.2) * step_m;
-  settings.drift_m = -0.5 * settings.local_map_m;  // no loop with adjacent maps
+  settings.drift_m = -0.5 * settings.local_map_m;  // Adjacent maps make no loop.
   settings.drift_share = 0;
   settings.most_maps = 11;
   LoopCloser closer(settings);
@@ -118,11 +121,13 @@ TEST(LoopCloser, MovesTheClosureOfAForgottenMapToTheOneBefore) {
   const Closure& closure = closer.closures().front();
   EXPECT_EQ(closure.from, 0U);
   EXPECT_EQ(closure.to, settings.most_maps - 1);
-  // The middles of the two maps are half a map before and after the corner.
+  // The middle of one map is half a map before the corner. The middle of the other map is half a
+  // map after it.
   EXPECT_NEAR(closure.pose.position.norm(), std::sqrt(0.5) * kScansOfAMap * step_m, 5);
 }
 
-/// Laps of the block with room for so few maps that the maps of a closure are forgotten, too.
+/// The drive has three laps around the block. There is room for so few maps that the closer also
+/// forgets the maps of a closure.
 TEST(LoopCloser, GoesOnSolvingWhereTheMapsOfAClosureAreForgotten) {
   const Points world = MakeWorld();
   const odometry::Trajectory drifted = Drive(3 * kScansOfALap);
@@ -142,21 +147,21 @@ TEST(LoopCloser, GoesOnSolvingWhereTheMapsOfAClosureAreForgotten) {
   EXPECT_LT(EndError(closer.Correct(drifted)), EndError(drifted) / 5);
 }
 
-/// The odometry may have drifted so far that all maps are candidates, of which eight are searched.
+/// The possible drift is so large that all maps are candidates. The closer searches eight of them.
 TEST(LoopCloser, SearchesTheNearestMaps) {
   const odometry::Trajectory drifted = Drive(2 * kScansOfALap);
   LoopSettings settings;
   settings.drift_m = 1'000;
   LoopCloser closer(settings);
   AddDrive(drifted, &closer);
-  ASSERT_EQ(closer.local_maps(), 19U);  // a lap has 9
+  ASSERT_EQ(closer.local_maps(), 19U);  // A lap needs 9 maps.
   for (std::size_t map = 16; map < 19; ++map)
     EXPECT_TRUE(std::any_of(closer.closures().begin(), closer.closures().end(),
                             [map](const Closure& c) { return c.to == map && c.from == map - 9; }))
         << map << " lies on the map of a lap before";
 }
 
-/// A sensor that stands sees nothing new, and its noise is no motion.
+/// A sensor at rest sees nothing new. Its noise must not count as motion.
 TEST(LoopCloser, MakesNoMapsWhereTheSensorStands) {
   LoopCloser closer({});
   odometry::StampedPose pose;
@@ -169,17 +174,17 @@ TEST(LoopCloser, MakesNoMapsWhereTheSensorStands) {
 }
 
 TEST(LoopCloser, DoubtsTheClosureThatIsMostContradicted) {
-  const std::vector<Pose> poses(4);  // all at one place
+  const std::vector<Pose> poses(4);  // All poses are at the same place.
   std::vector<Closure> closures(3);
   closures[0].pose.position.x() = 2;
   closures[1].pose.position.x() = 9;
   closures[2].pose.rotation = Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitZ());
   EXPECT_EQ(FindWorst(closures, poses), 1U);
   closures.erase(closures.begin() + 1);
-  EXPECT_EQ(FindWorst(closures, poses), 1U);  // it turns twice as far as a closure may
+  EXPECT_EQ(FindWorst(closures, poses), 1U);  // This closure turns twice as far as allowed.
   closures.pop_back();
   closures[0].pose.position.x() = 1.4;
-  EXPECT_EQ(FindWorst(closures, poses), 1U);  // now no closure turns
+  EXPECT_EQ(FindWorst(closures, poses), 1U);  // Now no closure turns.
 }
 
 TEST(Place, IsFoundAgainTurnedMovedAndTilted) {
@@ -204,7 +209,8 @@ TEST(Place, IsFoundAgainTurnedMovedAndTilted) {
 }
 
 TEST(PoseGraph, SpreadsWhatALoopContradicts) {
-  // A square whose fourth side ends a metre from its beginning.
+  // The poses are a square. The end of its fourth side is a metre away from the begin of the first
+  // side.
   std::vector<Pose> poses(5);
   std::vector<Edge> edges;
   for (std::size_t i = 1; i < poses.size(); ++i) {

@@ -53,7 +53,7 @@ TEST(TrueMotion, ItsTurnsAddUpToThoseOfTheDrive) {
   }
 }
 
-/// A turn of a radian a second to the left, on the spot.
+/// A route that turns to the left by one radian per second, on the spot.
 class TurningRoute : public Route {
  public:
   Place At(double time_s) const override {
@@ -95,7 +95,7 @@ TEST(TrueMotion, ItsAccelerationsAddUpToTheChangeOfSpeed) {
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(gained[i], after[i] - before[i], 0.02) << i;
 }
 
-/// The samples of a unit at rest.
+/// Returns the samples of a sensor that is at rest for 100 s.
 std::vector<ImuSample> AtRest(const ImuSpec& spec, std::uint64_t seed) {
   return Imu(Trajectory(TrajectorySettings{}), spec, seed).Until(seconds(100));
 }
@@ -104,7 +104,7 @@ TEST(Imu, HasTheNoiseThatItsDataSheetStates) {
   ImuSpec spec = kMemsImu;
   const auto samples = AtRest(spec, 1);
   ASSERT_EQ(samples.size(), 10'000U);
-  // Differences of neighbours leave the bias out.
+  // The difference between consecutive samples does not contain the bias.
   const auto noise_of = [&](auto value) {
     double squares = 0;
     for (std::size_t i = 1; i < samples.size(); ++i)
@@ -129,7 +129,7 @@ TEST(Imu, HasOffsetsOfItsOwn) {
     const ImuSample& first = samples.front();
     EXPECT_NEAR(first.acceleration[2], 9.80665, 5 * spec.accelerometer.offset);
     squares += std::pow(first.angular_velocity[0], 2);
-    // Over 100 s the bias wanders by little: degrees an hour.
+    // Within 100 s the bias changes by a few degrees per hour only.
     EXPECT_NEAR(samples.back().angular_velocity[0], first.angular_velocity[0],
                 10 * spec.gyroscope.bias_instability);
     EXPECT_NE(samples.back().angular_velocity[0], first.angular_velocity[0]);
@@ -137,7 +137,8 @@ TEST(Imu, HasOffsetsOfItsOwn) {
   EXPECT_NEAR(std::sqrt(squares / 100), spec.gyroscope.offset, 0.2 * spec.gyroscope.offset);
 }
 
-/// After its correlation time a Gauss-Markov process differs by sqrt(2 (1 - 1/e)) deviations.
+/// After its correlation time, a Gauss-Markov process has changed by sqrt(2 (1 - 1/e)) standard
+/// deviations (root mean square).
 TEST(Imu, ItsBiasesWanderAsTheirInstabilityStates) {
   ImuSpec spec = kMemsImu;
   spec.gyroscope.noise_density = spec.accelerometer.noise_density = 0;

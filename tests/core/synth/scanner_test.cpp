@@ -100,13 +100,13 @@ TEST_P(EveryScene, GivesTwoEchoesWhereABeamMeetsTwoThings) {
   const double share = static_cast<double>(both) / static_cast<double>(r.range_mm.size());
   EXPECT_GT(share, 0.001);
   EXPECT_LT(share, 0.2);
-  // Second returns do not change the number of beams with a first return.
+  // The option for second returns does not change how many pixels have a first return.
   EXPECT_NEAR(ShareOfReturns(r.range_mm), ShareOfReturns(Ranges(Config(GetParam()), 2)), 0.02);
 }
 
-// If each column has its own pose, ground points lie on the ground within a millimetre, to which
-// ranges are rounded. One pose a scan would be off by 1.2 m along the road and, with the pitch, by
-// centimetres of height.
+// If each column has a pose of its own, the points of the ground are within a millimetre of the
+// ground, because ranges are rounded to a millimetre. With one pose per scan, points would be wrong
+// by 1.2 m along the road, and by centimetres in height because of the pitch.
 TEST(Scanner, EveryColumnIsSampledFromItsOwnPose) {
   ScannerConfig config = Config();
   config.noise_m = 0;
@@ -125,7 +125,7 @@ TEST(Scanner, EveryColumnIsSampledFromItsOwnPose) {
       const Vec3 world = pose.ToRotation() * Vec3{p[0], p[1], p[2]};
       const double z = static_cast<double>(world.z) + pose.z;
       EXPECT_GT(z, -0.002);
-      low += z < 0.04 ? 1 : 0;  // the road, the feet of kerbs and wheels
+      low += z < 0.04 ? 1 : 0;  // points of the road, and the lowest points of kerbs and wheels
       on_the_road += z < 0.002 ? 1 : 0;
     }
   }
@@ -143,7 +143,7 @@ TEST(Scanner, RangesSpreadByTheNoiseThatWasAskedFor) {
   double squares = 0;
   int n = 0;
   for (std::size_t i = 0; i < exact.size(); ++i) {
-    if (exact[i] == 0 || noisy[i] == 0 || exact[i] > 12'000) continue;  // strong echoes
+    if (exact[i] == 0 || noisy[i] == 0 || exact[i] > 12'000) continue;  // only strong echoes
     const double d = static_cast<double>(noisy[i]) - static_cast<double>(exact[i]);
     sum += d;
     squares += d * d;
@@ -184,7 +184,7 @@ TEST(Scanner, ScanNumbersOfADayDoNotBlurThePicture) {
   Scanner scanner(config);
   const RangeProjection projection(config.sensor.model);
   Returns returns;
-  const std::uint64_t scan = 24 * 36'000;  // 2,592 km down the road
+  const std::uint64_t scan = 24 * 36'000;  // After a day, the car has driven 2,592 km.
   scanner.Cast(scan, {128, 4}, &returns);
   const Pose pose = scanner.trajectory().At(scanner.ColumnTime(scan, 128));
   double lowest = 0;

@@ -9,7 +9,7 @@
 namespace lidar::synth {
 namespace {
 
-/// Returns the distance to the shape, or 0 if the ray misses it.
+/// Returns the distance along the ray to the shape, or 0 if the ray misses the shape.
 float DistanceTo(const Shape& shape, Vec3 origin, Vec3 direction) {
   const float length = std::sqrt(Dot(direction, direction));
   Random noise(1);
@@ -77,7 +77,7 @@ TEST(Shapes, FoliageLetsSomeRaysThroughAndKeepsTheOthersInside) {
     EXPECT_GE(hit.distance, 8);
     EXPECT_LE(hit.distance, 12);
   }
-  // exp(-4 / 1.1) = 2.6 %
+  // The share of rays that pass the crown is exp(-4 / 1.1), or 2.6 %.
   EXPECT_NEAR(through, 53, 20);
 }
 

@@ -80,7 +80,7 @@ TEST(Town, TheRoadIsUnderTheSensorEverywhereOnTheWay) {
   for (std::uint64_t scan = 0; scan < 1800; scan += 60) {
     scanner.Cast(scan, {0, 2}, &returns);
     const Pose pose = scanner.trajectory().At(scanner.ColumnTime(scan, 0));
-    const std::uint32_t lowest = 31;  // 45 degrees down
+    const std::uint32_t lowest = 31;  // This beam looks down at 45 degrees.
     ASSERT_GT(returns.range_mm[lowest * 2], 0U) << scan;
     const auto p = projection.Point(lowest, 0, returns.range_mm[lowest * 2]);
     const Vec3 world = pose.ToRotation() * Vec3{p[0], p[1], p[2]};

@@ -6,8 +6,8 @@
 namespace lidar::viewer {
 namespace {
 
-/// A slice that refers to the slice `back` scans before it. 0: it stands alone. Negative: it stands
-/// alone, and no slice can refer to it.
+/// Returns a slice that refers to the slice `back` scans before it. If `back` is 0, the slice
+/// refers to no slice. If `back` is negative, no other slice can refer to it either.
 SharedSlice Make(std::uint32_t scan, std::uint32_t index, int back, std::int64_t bytes = 1000) {
   auto slice = std::make_shared<Slice>();
   slice->id = {scan, index};

@@ -8,8 +8,8 @@ namespace {
 
 constexpr std::uint32_t kPlaces = 2;
 
-/// A slice named by its scan and place. It refers to the same place `back` scans before; 0: to no
-/// slice.
+/// Returns a slice of the robot. It refers to the slice with the same index `back` scans before it,
+/// or to no slice if `back` is 0.
 SharedSlice Own(std::uint32_t scan, std::uint32_t index, std::uint32_t back) {
   auto slice = std::make_shared<Slice>();
   slice->id = {scan, index};
@@ -28,8 +28,8 @@ SharedSlice Recoded(std::uint32_t scan, std::uint32_t index) {
   return slice;
 }
 
-/// A stream of slices. Take() returns the slices that a feed sends: "3.1 " is the robot's slice,
-/// "3.1r " a re-coded one.
+/// A stream of slices. Take() returns the names of the slices that a feed sends: "3.1 " is a slice
+/// of the robot, and "3.1r " is a re-coded slice.
 class Stream {
  public:
   void Add(SharedSlice slice) { recent_.Add(std::move(slice)); }
@@ -73,7 +73,8 @@ TEST(Feed, GivesRecodedSlicesUntilTheRobotsStandAlone) {
   EXPECT_EQ(stream.Take(&feed), "5.0r ");
   stream.Add(Own(6, 0, 1));
   stream.Add(Own(7, 0, 0));
-  stream.Add(Recoded(6, 0));  // in time still, but of a scan that was never begun
+  // It arrives in time, but belongs to a scan of which nothing was sent.
+  stream.Add(Recoded(6, 0));
   EXPECT_EQ(stream.Take(&feed), "7.0 ");
   EXPECT_FALSE(feed.wants_recoded());
   stream.Add(Own(8, 0, 1));
@@ -90,7 +91,7 @@ TEST(Feed, ForgetsWhatTheDecoderForgot) {
   }
   stream.Add(Own(scan, 0, 2'000));
   EXPECT_NE(stream.Take(&feed), "");
-  for (const std::uint32_t first : {1U, 20U}) {  // of the scans that are forgotten
+  for (const std::uint32_t first : {1U, 20U}) {  // scans that the decoder forgot
     ++scan;
     stream.Add(Own(scan, 0, scan - first));
     EXPECT_EQ(stream.Take(&feed), "") << first;
@@ -124,7 +125,7 @@ TEST(Feed, SkipsWholeScansOfAViewerThatIsSlow) {
   EXPECT_EQ(feed.scans_skipped(), 2U);
   feed.OnDrawn(Time{std::chrono::milliseconds(60)}, {2, 1});
   EXPECT_EQ(stream.Take(&feed), "5.0 5.1 ");
-  // The slices of the scans in between are missing.
+  // The viewer lacks the slices of the scans 3 and 4.
   stream.Add(Own(6, 0, 2));
   EXPECT_EQ(stream.Take(&feed), "");
   EXPECT_TRUE(feed.wants_recoded());
@@ -154,7 +155,7 @@ TEST(Recorded, ComeInOrderAsFastAsTheyAreDrawn) {
     now += std::chrono::milliseconds(10);
     feed.OnDrawn(now, {drawn, 0});
     for (const auto& slice : feed.TakeRecorded(now, &waiting)) EXPECT_EQ(slice->id.scan, ++scan);
-    EXPECT_LT(scan - drawn, 15U);  // 100 ms at that rate, and slices on their way
+    EXPECT_LT(scan - drawn, 15U);  // This is 100 ms at that rate, and the slices on the way.
   }
   EXPECT_TRUE(waiting.empty());
 }
@@ -167,7 +168,8 @@ TEST(Recorded, AreFewUnderWayHoweverSmallTheyAre) {
 }
 
 TEST(References, OfTheWantedSlicesComeBeforeThem) {
-  // Place 0: 5 refers to 3, 3 to 1; place 1: 5 refers to 4, which stands alone.
+  // At index 0, scan 5 refers to scan 3, which refers to scan 1. At index 1, scan 5 refers to scan
+  // 4, which refers to no scan.
   const std::vector<SharedSlice> slices = {Own(1, 0, 0), Own(1, 1, 0), Own(2, 0, 1), Own(2, 1, 1),
                                            Own(3, 0, 2), Own(4, 1, 0), Own(5, 0, 2), Own(5, 1, 1)};
   std::string text;

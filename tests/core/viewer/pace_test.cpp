@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Viewers behind simulated links: how many scans they draw, and how old those are.
+// Simulates viewers behind links. Tests how many scans they draw, and how old these scans are.
 #include "src/viewer/pace.h"
 
 #include <gtest/gtest.h>
@@ -25,12 +25,12 @@ struct Link {
   Duration one_way;
 };
 
-/// An unbounded queue before a link, and a page that acknowledges once a frame.
+/// A viewer with an unbounded queue before its link. Its page acknowledges slices once per frame.
 class Viewer {
  public:
   explicit Viewer(const Link& link, DataRate max_bitrate = {}) : link_(link), pace_(max_bitrate) {}
 
-  /// Runs for `time`, in steps of a millisecond. A hidden page acknowledges nothing.
+  /// Simulates `time` in steps of a millisecond. A hidden page acknowledges nothing.
   void Run(Duration time, bool hidden = false) {
     for (const Time end = now_ + time; now_ < end; now_ += milliseconds(1)) {
       if (!hidden) Draw();
@@ -62,9 +62,10 @@ class Viewer {
   struct Packet {
     SliceId slice;
     Time captured;
-    Time at;  // arrives
+    Time at;  // the time of arrival
   };
-  /// The sensor gives a slice each kScan / kSlicesOfScan; a scan that has begun is sent to its end.
+  /// Takes a slice from the sensor every kScan / kSlicesOfScan. If the pace allows a scan, sends
+  /// all slices of the scan.
   void Sample() {
     if (now_ >= next_) {
       if (index_ == kSlicesOfScan) {
@@ -109,7 +110,7 @@ class Viewer {
   Time frame_{};
   Time free_{};
   std::uint32_t scan_ = 0;
-  std::uint32_t index_ = 0;  // slices of the scan that the sensor has given
+  std::uint32_t index_ = 0;  // the number of slices that the sensor has measured of the scan
   bool taken_ = false;
   std::queue<Packet> path_;
   std::queue<Packet> acks_;
@@ -196,9 +197,9 @@ TEST(Pace, GivesTwoScansToAViewerThatAcknowledgesNothing) {
 
 TEST(Pace, IsLateWhereWhatWasSentTakesTooLong) {
   Pace pace{DataRate()};
-  Time now{std::chrono::seconds(60)};  // the pause before is no part of the rate
+  Time now{std::chrono::seconds(60)};  // The pause before this time does not count for the rate.
   EXPECT_FALSE(pace.IsLate(now));
-  // A kilobyte takes 10 ms.
+  // At this rate, a kilobyte takes 10 ms.
   pace.OnSent(now, {1, 0}, DataSize::Bytes(1000));
   pace.OnDrawn(now += milliseconds(10), {1, 0});
   pace.OnSent(now, {2, 0}, DataSize::Bytes(10'000));
@@ -224,7 +225,8 @@ TEST(Pace, TakesADelayOfAFrameMoreForTheSame) {
     ASSERT_TRUE(pace.MayBegin(now)) << scan;
     pace.OnSent(now, {scan, 0}, DataSize::Bytes(1000));
     pace.OnDrawn(now + milliseconds(scan == 1 ? 10 : 25), {scan, 0});
-    // This slice is still on the way when the next one is sent, so that no later slice is alone.
+    // This slice is still on the way when the next slice is sent. So none of the later slices is
+    // alone on the way.
     pace.OnSent(now + milliseconds(26), {scan, 1}, DataSize::Bytes(10));
   }
   EXPECT_EQ(pace.shortest_delay(), milliseconds(10));

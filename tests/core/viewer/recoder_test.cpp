@@ -13,7 +13,7 @@ codec::CloudFormat RoomFormat() {
   return {test::OrganisedLayout(), static_cast<std::uint32_t>(model.beams.size()), model};
 }
 
-/// A decoded sector of a room.
+/// A sector of a room that was decoded.
 struct Sector {
   codec::CloudFormat format = RoomFormat();
   codec::RangeImage image = test::RoomScan(*format.sensor_model, 64, 64);
