@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// bonding-matrix: simulates a stream over two links, and prints tables of
+// bonding-matrix: simulates a stream over two links, and prints the tables of
 // docs/results/two-links.md.
 #include <cmath>
 #include <cstdio>
@@ -24,7 +24,7 @@ using lidar::scream::test::TcpKind;
 
 constexpr std::uint64_t kPairs = 10;
 constexpr unsigned kRuns = 20;
-/// Run n starts the other flow after n times this duration.
+/// The other flow starts n * kPhase after the beginning of run n, so that the runs differ.
 constexpr Duration kPhase = 137ms;
 
 Capacity Drive(std::uint64_t seed) {
@@ -46,7 +46,7 @@ double Mean(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-/// Half of the mean's confidence interval of 95 %, relative to the mean.
+/// Returns half the width of the 95 % confidence interval of the mean, relative to the mean.
 double Uncertainty(const std::vector<double>& values) {
   const double mean = Mean(values);
   double squares = 0;
@@ -55,8 +55,9 @@ double Uncertainty(const std::vector<double>& values) {
   return 1.96 * std::sqrt(squares / (n - 1) / n) / mean;
 }
 
-/// Compares a stream over a pair of generated drives with two senders that send as many bytes at a
-/// constant rate. The first knows the drives in advance, the second after a round trip.
+/// Compares a stream over two generated drives with two ideal senders. Each of them sends the same
+/// number of bytes as the stream, at a constant rate. The first knows the capacity of the drives in
+/// advance, the second only after a round trip.
 void PrintPair(std::uint64_t seed, bool adapts, Duration duration) {
   RunConfig config;
   config.links = {{Drive(seed)}, {Drive(seed + 1)}};
@@ -92,7 +93,8 @@ void PrintDrives(Duration duration) {
     for (std::uint64_t i = 0; i < kPairs; ++i) PrintPair(2 * i + 1, adapts, duration);
 }
 
-/// A stream over one link, and over two, shares a queue with a greedy flow.
+/// Simulates a greedy flow and a stream that share the queue of one bottleneck. The stream uses one
+/// link to the bottleneck first, and two links in a second simulation.
 void PrintOneBottleneck(TcpKind kind, double mbps, Duration duration) {
   LinkConfig link{Capacity::Constant(Mbps(mbps))};
   if (kind == TcpKind::kPrague)

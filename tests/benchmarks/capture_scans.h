@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The scans of a capture as raw clouds.
+// Reads the scans of a capture file as raw clouds.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -21,7 +21,8 @@ struct Capture {
   std::vector<CapturedSlice> slices;
 };
 
-/// Returns complete scans only, cut into `slices_per_scan`; nullopt if a file cannot be read.
+/// Returns the complete scans of a capture, each cut into `slices_per_scan` slices. Returns nullopt
+/// if a file cannot be read.
 std::optional<Capture> ReadCapture(const std::string& pcap, const std::string& metadata,
                                    std::uint32_t slices_per_scan);
 

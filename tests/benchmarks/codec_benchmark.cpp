@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Size and speed of the range and xyz codecs on real scans; in one thread unless stated.
+// Measures size and speed of the range codec and of the xyz codec on real scans. Each benchmark
+// uses one thread unless its name says otherwise.
 #include <benchmark/benchmark.h>
 
 #include <cstdlib>
@@ -33,14 +34,16 @@ const Capture& CaptureOf(std::int64_t source, std::int64_t slices) {
   return captures[{source, slices}] = *std::move(capture);
 }
 
-// The argument `coder` is a codec::RangeCoder. For kMixing it is kEffort plus the effort.
+// The argument `coder` of a benchmark is the number of a codec::RangeCoder. For the mixing coder it
+// is kEffort plus the effort.
 constexpr std::int64_t kEffort = 10;
 
 codec::RangeCoder CoderOf(std::int64_t coder) {
   return coder > kEffort ? codec::RangeCoder::kMixing : static_cast<codec::RangeCoder>(coder);
 }
 
-/// Range arguments: source, slices a scan, coder, error [mm], intensity bits.
+/// The arguments of a benchmark of the range codec are: source, slices per scan, coder, error [mm],
+/// intensity bits.
 struct Setup {
   explicit Setup(const benchmark::State& state, Geometry geometry)
       : capture(CaptureOf(state.range(0), state.range(1))),
@@ -89,7 +92,8 @@ void Encode(benchmark::State& state, Geometry geometry) {
   EncodeAll(&setup, state);
 }
 
-/// Encodes whole scans. It measures wall-clock time, because the threads share the work.
+/// Encodes whole scans with several threads. The benchmark uses wall-clock time, because CPU time
+/// would not become shorter when threads share the work.
 void EncodeWithThreads(benchmark::State& state) {
   Setup setup(state, Geometry::kRange);
   setup.encoder.set_threads(static_cast<unsigned>(state.range(5)));
@@ -139,7 +143,8 @@ void RangeCases(benchmark::internal::Benchmark* b) {
 
 void XyzCases(benchmark::internal::Benchmark* b) {
   b->ArgNames({"source", "slices", "level", "error_mm", "intensity"});
-  // Draco's coders: sequential, and the four modes of its kd-tree.
+  // Level 0 is Draco's sequential coder. Each other level is one of the four modes of its kd-tree
+  // coder.
   for (const int level : {0, 1, 3, 5, 7})
     for (const int slices : {1, 8}) b->Args({1, slices, level, 20, 0});
   for (const int level : {0, 7}) b->Args({0, 1, level, 20, 0});

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Runs all simulated cases of the controller of one commit: prints goals met and missed, or
-# (--ablation) what each part is worth. usage: controller.sh BUILD [--ablation] [options of
-# controller-goals]
+# Runs all simulated cases of the controller for one commit, and prints which goals it meets and
+# misses. With --ablation, prints how much worse the results are without each part of the
+# controller.
+# usage: controller.sh BUILD [--ablation] [options of controller-goals]
 set -eu
 build=$1
 shift

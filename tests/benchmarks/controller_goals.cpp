@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// controller-goals: runs every simulated case of the controller and prints goals met and missed, or
-// what each part of the controller is worth.
+// controller-goals: runs every simulated case of the controller, and prints which goals it meets
+// and misses. With --ablation, prints how the results change without each part of the controller.
 #include <algorithm>
 #include <atomic>
 #include <cstdio>
@@ -24,7 +24,8 @@ using namespace lidar::scream::test;
 
 struct Options {
   std::vector<std::string> cases;
-  std::string group;  // how names of its cases begin
+  // The names of the cases begin with this text.
+  std::string group;
   Parameters parameters;
   int starts = 12;
   bool all_figures = false;
@@ -35,7 +36,7 @@ struct Case {
   std::string name;
   std::function<std::vector<Figure>(const Parameters&)> run;
 };
-using Results = std::vector<std::vector<Figure>>;  // by case
+using Results = std::vector<std::vector<Figure>>;  // the figures of each case
 
 void Parse(int argc, char** argv, Options* options) {
   CLI::App app{
@@ -92,7 +93,8 @@ void AddLoop(int starts, std::vector<Case>* cases) {
 
 std::vector<Case> Cases(const Options& options) {
   std::vector<Case> all;
-  AddLoop(options.starts, &all);  // the longest first
+  // The longest cases come first. A long case that starts last would run alone at the end.
+  AddLoop(options.starts, &all);
   AddMatrix(&all);
   AddRmcat(WiredCases, &all);
   AddRmcat(WirelessCases, &all);
@@ -113,7 +115,8 @@ std::vector<Case> Cases(const Options& options) {
   return wanted;
 }
 
-/// Runs the cases on all processors: each takes the next case.
+/// Runs the cases in parallel, with one thread per processor. A thread that has finished a case
+/// continues with the next case that is not yet running.
 Results Run(const std::vector<Case>& cases, const Parameters& parameters) {
   Results results(cases.size());
   std::atomic<std::size_t> next{0};
@@ -151,7 +154,8 @@ struct Change {
   double size = 0;
 };
 
-/// Returns the differences between two runs of all cases, the largest first.
+/// Returns the figures that differ between two runs of all cases. The largest difference is the
+/// first.
 std::vector<Change> Changes(const std::vector<Case>& cases, const Results& base,
                             const Results& other) {
   std::vector<Change> changes;

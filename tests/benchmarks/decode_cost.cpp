@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Searches for slices that cost a decoder the most processor time per byte sent: damages real
-// slices, and slices of equal points, at random, then damages the dearest ones again. Prints a line
-// for each coder. usage: decode-cost [SECONDS]
+// Searches for the slices that cost a decoder the most processor time per byte sent. It damages
+// real slices, and slices whose points are all equal, at random. The slices with the highest cost
+// are damaged again. Prints a line for each coder.
+// usage: decode-cost [SECONDS]
 #include <time.h>
 
 #include <algorithm>
@@ -19,9 +20,10 @@ namespace lidar::bench {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
-constexpr std::uint32_t kMaxPoints = 1U << 20;  // the limit of lidardec
+constexpr std::uint32_t kMaxPoints = 1U << 20;  // the largest number that lidardec accepts
 constexpr std::size_t kKept = 32;
-constexpr double kHeaders = 72;  // bytes of IP, UDP, RTP and the slice's unit
+// The number of bytes that IP, UDP, RTP and the header of the slice's unit have together.
+constexpr double kHeaders = 72;
 
 double ProcessorTime() {
   timespec t{};
@@ -29,7 +31,7 @@ double ProcessorTime() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-/// Decodes a slice, or refuses it.
+/// Decodes a slice. A slice that is damaged may be refused.
 using Decode = std::function<void(ByteView)>;
 
 struct Slice {
@@ -38,7 +40,8 @@ struct Slice {
   double CostOfAByte() const { return cost_s / (kHeaders + static_cast<double>(bytes.size())); }
 };
 
-/// Takes the least of three times, because other programs only add to them.
+/// Measures the processor time that decoding takes. Returns the smallest of three times, because a
+/// disturbance by another program can only make a time longer.
 Slice Measure(const Decode& decode, Bytes bytes) {
   Slice slice{std::move(bytes), 1e9};
   for (int i = 0; i < 3; ++i) {
@@ -53,7 +56,8 @@ Bytes Damaged(const Bytes& from, std::mt19937* random) {
   Bytes bytes = from;
   const auto any = [random](std::size_t n) { return (*random)() % n; };
   for (std::size_t n = 1 + any(3); n > 0; --n) {
-    // Half of the changes are at the front, where headers, sizes and counts cost most.
+    // Half of the changes are within the first 24 bytes. These contain headers, sizes and counts,
+    // where a change has the largest effect on the cost.
     const std::size_t at =
         any(2) == 0 ? any(std::min<std::size_t>(bytes.size(), 24)) : any(bytes.size());
     constexpr std::uint8_t kEdges[] = {0, 1, 0x7F, 0x80, 0xFF};
@@ -99,7 +103,7 @@ void Search(const char* coder, const std::vector<Bytes>& seeds, const Decode& de
   std::fflush(stdout);
 }
 
-/// Returns the slices of a capture as a coder of ranges makes them, and as Draco's own files.
+/// Returns the slices of a capture, encoded with `geometry` and `coder`.
 std::vector<Bytes> Code(const Capture& capture, Geometry geometry, codec::RangeCoder coder,
                         unsigned effort) {
   auto encoder = *draco::SliceEncoder::Create(capture.format, geometry, coder);
@@ -129,7 +133,8 @@ std::vector<Bytes> CodeAsCloud(const Capture& capture, const codec::cloud::Exact
   return all;
 }
 
-/// Returns a whole scan that takes few bytes: each of its points is the capture's first.
+/// Returns a scan whose points are all equal to the first point of the capture. A coder encodes
+/// such a scan in few bytes.
 CapturedSlice Alike(const Capture& capture) {
   const codec::CloudFormat& format = capture.format;
   const std::vector<std::uint8_t>& points = capture.slices.front().points;

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Measures what docs/results/ecosystem.md shows, and prints it as the tables of that page.
+# Measures the figures of docs/results/ecosystem.md, and prints them as the tables of that page.
 set -uo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(dirname "$(dirname "$here")")
@@ -40,12 +40,12 @@ bench=$build/tests/elements/ros2/ros2-bench
 mapfile -t plugins < <(meson introspect "$build" --targets | jq -r --arg dir "$build/" '.[].filename[] | select(test("/libgst[^/]*[.]so$")) | ltrimstr($dir)')
 ninja -C "$build" "${plugins[@]}" "${bench#"$build/"}" >/dev/null 2>&1 || { echo "The build fails." >&2; exit 1; }
 
-# Plugins of the build tree, and DDS on loopback only.
+# Uses the plugins of the build tree. DDS uses the loopback interface only.
 export GST_PLUGIN_PATH_1_0 GST_REGISTRY=$build/benchmark-registry.bin
 export CYCLONEDDS_URI='<General><Interfaces><NetworkInterface name="lo" multicast="true"/></Interfaces></General>'
 GST_PLUGIN_PATH_1_0=$(printf "$build/%s\n" "${plugins[@]%/*}" | sort -u | paste -sd:)
 
-# measure ELEMENT PEER QOS WIDTH: prints the figures of ros2-bench as a row of a table.
+# measure ELEMENT PEER QOS WIDTH: runs ros2-bench, and prints its figures as a row of a table.
 measure() {
   "$bench" "$1" "$2" "$3" "$4" "$clouds" 2>/dev/null | awk -v element="ros2$1" -v peer="$2" -v qos="$3" '
     { who = $1; sub(":", "", who); cpu[who] = $2 " %" }
@@ -66,7 +66,8 @@ measure() {
     }'
 }
 
-# table WIDTH ROW...
+# table WIDTH ROW...: prints a table of clouds with WIDTH columns. Each ROW has the other arguments
+# of measure.
 table() {
   local width=$1 row
   shift
@@ -85,7 +86,7 @@ measure_ros2() {
   table 1024 "src fast reliable" "src cyclone reliable" "sink fast reliable"
 }
 
-# Measures with a receive buffer of 208 KiB, the default of Linux.
+# Measures with the default receive buffer of Linux, which has 208 KiB.
 measure_small_buffer() {
   local setting=/proc/sys/net/core/rmem_max granted
   granted=$(cat "$setting")

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// loop-matrix: runs encoder, sender and link in simulated time over traces with gaps. Prints their
-// figures beside those of a sender that knows the link.
+// loop-matrix: simulates an encoder, a sender and a link over traces with gaps. Prints their
+// figures beside those of an ideal sender that knows the capacity of the link in advance.
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -42,7 +42,8 @@ struct Options {
   double seconds = 60;
   double rtt_ms = 40;
   int starts = 1;
-  double late_share = -1;  // below 0: the loop itself runs
+  // A value below 0 means that the loop itself is simulated, and not a late sender.
+  double late_share = -1;
   std::string samples;
 };
 
@@ -130,7 +131,8 @@ void PrintShort(const GoalResult& goal) {
   if (!goal.holds) std::printf("    short: %s\n", goal.text.c_str());
 }
 
-/// Compares an encoder that adapts with an encoder that always uses the coarsest step.
+/// Compares the encoder that adapts its step with an encoder that always uses the coarsest step.
+/// Prints the goal that is missed, if any.
 void CompareWithFixed(LoopCase c, const LoopReport& report) {
   if (c.frames || !c.source.adapts) return;
   c.source.adapts = false;
@@ -155,7 +157,7 @@ void PrintRow(const LoopCase& c, const LoopReport& r) {
   std::fflush(stdout);
 }
 
-/// Mean and range of a figure over several runs.
+/// The mean, the least and the greatest value of a figure over several runs.
 class Spread {
  public:
   void Add(double value) {
@@ -176,7 +178,7 @@ class Spread {
   int runs_ = 0;
 };
 
-/// A figure of a report that PrintSpread() shows, and its number of decimals.
+/// A figure that PrintSpread() prints with `digits` decimals.
 struct Figure {
   const char* name;
   int digits;
@@ -222,7 +224,8 @@ void PrintSpread(const LoopCase& loop_case, int starts) {
   std::fflush(stdout);
 }
 
-/// Prints figures of a sender that follows the link late, as a yardstick for senders that adapt.
+/// Prints the figures of a sender that uses a `share` of the link's capacity, but learns of each
+/// change late. Senders that adapt are compared with these figures.
 void PrintLate(const LoopCase& loop_case, double share, int starts) {
   LateSenderConfig config;
   config.duration = loop_case.duration;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Size and speed of the mixing coder on real scans, in one thread.
+// Measures size and speed of the mixing coder on real scans, in one thread.
 #include <benchmark/benchmark.h>
 
 #include <cstdlib>
@@ -21,10 +21,10 @@ struct Source {
 constexpr Source kSources[] = {
     {"OS0-32", "OS-0-32-U1_v2.2.0_1024x10.pcap", "OS-0-32-U1_v2.2.0_1024x10.json"},
     {"OS1-128-lb_n3", "OS-1-128_v2.3.0_1024x10_lb_n3.pcap", "OS-1-128_v2.3.0_1024x10.json"}};
-// Each block has a header of this size in front of its payload.
+// The size of the header in front of a block's payload.
 constexpr double kHeaderBytes = 12;
 
-/// Arguments: source, slices a scan, effort, error [mm], intensity bits.
+/// The arguments of a benchmark are: source, slices per scan, effort, error [mm], intensity bits.
 struct Setup {
   explicit Setup(const benchmark::State& state) {
     const Source& source = kSources[state.range(0)];

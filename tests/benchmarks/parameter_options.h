@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Options of the simulating programs that change the sender's parameters.
+// Command-line options of the simulation programs that change the parameters of the sender.
 #pragma once
 #include <CLI/CLI.hpp>
 #include <string>
@@ -9,13 +9,15 @@
 
 namespace lidar::scream::test {
 
-/// Returns false if `name` is no extension and no optional part of the draft.
+/// Switches an extension or an optional part of the draft on or off. Returns false if `name` is
+/// neither.
 inline bool Switch(const std::string& name, bool on, Parameters* parameters) {
   const Tunable* tunable = FindTunable(name);
   return tunable != nullptr && tunable->is_switch() && tunable->Set(on ? 1 : 0, parameters);
 }
 
-/// Adds an option that hands each of its values to `set`, which returns false for a wrong one.
+/// Adds an option that may be repeated. Calls `set` with each of its values. `set` returns false if
+/// the value is wrong.
 template <class Set>
 void AddRepeated(CLI::App* app, const std::string& name, const std::string& help, Set set) {
   using Values = std::vector<std::string>;
@@ -26,7 +28,8 @@ void AddRepeated(CLI::App* app, const std::string& name, const std::string& help
   app->add_option_function<Values>(name, take, help)->allow_extra_args(false);
 }
 
-/// The options apply in this order.
+/// Adds the options that change the parameters. They are applied in the order in which they are
+/// added here, whatever their order on the command line is.
 inline void AddParameterOptions(CLI::App* app, Parameters* parameters) {
   app->add_flag_callback(
       "--draft", [parameters] { *parameters = Parameters::Draft(); },

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What a packet of 1200 bytes costs in screamtx and in screamrx, feedback included.
+// Measures how much CPU time a packet of 1200 bytes costs in screamtx and in screamrx, including
+// the feedback.
 #include <benchmark/benchmark.h>
 #include <gst/gst.h>
 
@@ -45,7 +46,8 @@ void SendStart(GstPad* pad, const char* caps_text) {
   gst_pad_push_event(pad, gst_event_new_segment(&segment));
 }
 
-/// The far end: counts packets and reports them at once on rtcp_sink.
+/// The receiver of the packets. It counts the packets, and sends a report about them to the pad
+/// rtcp_sink as soon as kPacketsPerReport have arrived.
 struct Receiver {
   GstPad* pad = gst_pad_new("sink", GST_PAD_SINK);
   GstPad* rtcp = gst_pad_new("src", GST_PAD_SRC);
@@ -94,7 +96,8 @@ GstFlowReturn Count(GstPad* pad, GstObject*, GstBuffer* buffer) {
   return GST_FLOW_OK;
 }
 
-/// Makes the input not live: screamtx holds it back instead of dropping it.
+/// Answers a latency query as a source that is not live. For such a source screamtx blocks the
+/// input instead of dropping packets.
 gboolean NotLive(GstPad* pad, GstObject* parent, GstQuery* query) {
   if (GST_QUERY_TYPE(query) != GST_QUERY_LATENCY) return gst_pad_query_default(pad, parent, query);
   gst_query_set_latency(query, FALSE, 0, GST_CLOCK_TIME_NONE);
@@ -120,7 +123,8 @@ void LinkReceiver(GstElement* tx, Receiver* receiver) {
   gst_pad_link(receiver->rtcp, rtcp.get());
 }
 
-/// Measures CPU time of the whole process: input, pacing, feedback, and making the reports.
+/// Measures the CPU time of the whole process. It includes input, pacing, feedback, and making the
+/// reports.
 void ScreamTx(benchmark::State& state) {
   const ElementPtr tx(
       GST_ELEMENT(gst_object_ref_sink(gst_element_factory_make("screamtx", nullptr))));

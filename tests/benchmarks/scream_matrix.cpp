@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// scream-matrix: runs the named scenarios in simulated time and prints the table.
+// scream-matrix: simulates the named scenarios, and prints a table of the results.
 #include <cstdint>
 #include <cstdio>
 #include <string>

@@ -39,7 +39,8 @@ SCENARIOS = {
     "frames_20M_two_flows": ("two flows on 20 Mbit/s, ramp", ["--rate", "20", "--rtt", "25"] + RAMP, "ect1", 50, 40),
     "frames_8M_fifo10_notect": ("8 Mbit/s, Not-ECT, FIFO 10 ms", ["--rate", "8", "--rtt", "40", "--queue", "10"], "off", 50, 40),
 }
-# The slices of a LiDAR instead of frames: 80 a second, of sizes that vary by 10 %.
+# These scenarios send slices of a LiDAR instead of frames: 80 slices per second, whose sizes vary
+# by 10 %.
 SLICES_FPS, SLICES_JITTER = 80, 10
 for _name in [n for n in SCENARIOS if n.startswith("frames_") and not n.endswith(("loss0.5", "loss2.0"))]:
     _text, _link, _ecn, _, _seconds = SCENARIOS[_name]
@@ -141,7 +142,8 @@ class Run:
             start(self.peers.sender(self.senders[i], self.peers.link_port + i, self.ecn, self.fps,
                                     str(self.folder / f"tx{i}.json")), f"tx{i}.txt")
         time.sleep(self.seconds)
-        # The senders end first, then the receivers, then the link, which writes its summary.
+        # The senders are stopped first, then the receivers, and last the link, which then writes
+        # its summary.
         count = len(self.senders)
         order = processes[count + 1:] + processes[:count] + [processes[count]]
         for p in order:

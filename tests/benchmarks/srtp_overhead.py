@@ -68,7 +68,8 @@ def main():
     suites = {"": "", **{c: f"srtp-cipher={c} srtp-key={'5a' * size}" for c, size in KEYS.items()},
               "hmac-sha1-32": f"srtp-auth=hmac-sha1-32 srtp-key={'5a' * 30}"}
     rounds = [{name: run(options) for name, options in suites.items()} for _ in range(ROUNDS)]
-    # Disturbances only add time, so the least time counts.
+    # The least time of all rounds is used, because disturbances by other programs can only make a
+    # time longer.
     least = {name: [min(r[name][end] for r in rounds) for end in (0, 1)] for name in suites}
     size = packet_size("")
     came = [r[name][2] for r in rounds for name in suites]

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// tcp-flow: a greedy flow of Reno, Cubic or Prague over UDP, to compete with ours on lidar-link.
+// tcp-flow: sends a greedy flow over UDP that is controlled like TCP by Reno, Cubic or Prague. It
+// competes with a flow of this project on lidar-link.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <map>
@@ -29,7 +30,7 @@ constexpr std::uint8_t kEcnMask = 3;
 constexpr std::uint8_t kCe = 3;
 constexpr std::uint8_t kEct1 = 1;
 
-/// Sends until a signal comes, then prints the number of packets sent.
+/// Sends packets until the process gets a signal. Then prints the number of packets sent.
 void Send(const std::string& to, TcpKind kind) {
   UdpSocket socket = UdpSocket::Connect(lidar::tools::ResolveAddress(to, "127.0.0.1"));
   EventLoop loop;
@@ -60,7 +61,7 @@ void Send(const std::string& to, TcpKind kind) {
   std::printf("{\"packets_sent\": %llu}\n", static_cast<unsigned long long>(packets));
 }
 
-/// Acknowledges each packet to the address that it came from.
+/// Sends an acknowledgement of each packet to the address that the packet came from.
 void Receive(const std::string& at) {
   UdpSocket socket = UdpSocket::Bind(lidar::tools::ResolveAddress(at, "0.0.0.0"));
   EventLoop loop;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A drive around a block whose odometry drifts.
+// A simulated drive around a block, and the poses of an odometry that drifts on it.
 #pragma once
 #include <cmath>
 #include <random>
@@ -12,7 +12,8 @@ using odometry::Points;
 using odometry::Pose;
 
 inline constexpr double kTurn = 6.283185307179586;
-inline constexpr double kRadius = 60;  // of the driven circle [m]
+// The radius of the driven circle [m].
+inline constexpr double kRadius = 60;
 inline constexpr int kScansOfALap = 190;
 
 inline Pose TrueAt(int scan) {
@@ -23,7 +24,7 @@ inline Pose TrueAt(int scan) {
   return pose;
 }
 
-/// Makes ground, and pillars of many sizes at random places.
+/// Returns the points of a flat ground and of pillars of many sizes at random places.
 inline Points MakeWorld() {
   std::mt19937 random(4);
   std::uniform_real_distribution<double> anywhere(-130, 130);
@@ -47,13 +48,15 @@ inline Points MakeWorld() {
 inline Points SeenFrom(const Pose& pose, const Points& world, int scan) {
   const Pose back = pose.Inverse();
   Points points;
-  // The scans of a local map together see every point.
+  // A scan has every 16th point of the world. The scans of a local map together have all points,
+  // because the subset changes from scan to scan.
   for (std::size_t i = static_cast<std::size_t>(scan % 16); i < world.size(); i += 16)
     if ((world[i] - pose.position).squaredNorm() < 3600) points.push_back(back * world[i]);
   return points;
 }
 
-/// Returns the odometry's poses: each step is a little too long and turns a little too far.
+/// Returns the poses of an odometry that drifts: each of its steps is a little longer than the true
+/// step and turns a little farther.
 inline odometry::Trajectory Drive(int scans) {
   odometry::Trajectory way;
   for (int i = 0; i < scans; ++i) {

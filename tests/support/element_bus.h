@@ -12,7 +12,7 @@
 
 namespace lidar::test {
 
-/// The text of an error or a warning.
+/// Returns the text of an error or a warning.
 inline std::string MessageText(GstMessage* message) {
   GError* error = nullptr;
   GST_MESSAGE_TYPE(message) == GST_MESSAGE_ERROR
@@ -21,7 +21,7 @@ inline std::string MessageText(GstMessage* message) {
   return gst::ErrorPtr(error)->message;
 }
 
-/// The details of an error or a warning.
+/// Returns the details of an error or a warning.
 inline std::string MessageDetails(GstMessage* message) {
   gchar* details = nullptr;
   GST_MESSAGE_TYPE(message) == GST_MESSAGE_ERROR
@@ -31,7 +31,7 @@ inline std::string MessageDetails(GstMessage* message) {
   return details != nullptr ? details : "";
 }
 
-/// The bus of an element, which gets one if it has none.
+/// Reads messages from the bus of an element. Gives the element a bus if it has none.
 class ElementBus {
  public:
   explicit ElementBus(GstElement* element) : bus_(gst_element_get_bus(element)) {
@@ -41,18 +41,19 @@ class ElementBus {
     own_.reset(GST_ELEMENT(gst_object_ref(element)));
   }
 
-  /// Returns the next message of `types`, or null; drops others before it.
+  /// Returns the next message of `types`, or null if there is none. Drops the messages of other
+  /// types before it.
   gst::MessagePtr Pop(int types = GST_MESSAGE_ANY) const { return Wait(types, 0); }
   gst::MessagePtr Wait(int types = GST_MESSAGE_ANY, GstClockTime timeout = kPatience_ns) const {
     return gst::MessagePtr(
         gst_bus_timed_pop_filtered(bus_.get(), timeout, static_cast<GstMessageType>(types)));
   }
-  /// Returns the text of the next error or warning of `types`, or nothing.
+  /// Returns the text of the next error or warning of `types`, or an empty text if there is none.
   std::string Text(int types) const {
     const gst::MessagePtr message = Pop(types);
     return message ? MessageText(message.get()) : "";
   }
-  /// Returns the texts of all messages of `type`, which are errors or warnings.
+  /// Returns the texts of all messages of `type`, which must be a type of errors or warnings.
   std::vector<std::string> Texts(GstMessageType type) const {
     std::vector<std::string> texts;
     while (const gst::MessagePtr message = Pop(type)) texts.push_back(MessageText(message.get()));

@@ -14,7 +14,7 @@ inline gst::StructurePtr StatsOf(GstElement* element) {
   return gst::StructurePtr(stats);
 }
 
-/// Returns a number or a flag of the statistics.
+/// Returns the field `name` of the statistics. A flag is returned as 0 or 1.
 inline guint64 StatOf(GstElement* element, const char* name) {
   const gst::StructurePtr stats = StatsOf(element);
   guint64 value = 0;

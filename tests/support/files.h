@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Files of tests, and folders for them.
+// Functions to read files in tests, and temporary folders.
 #pragma once
 #include <gtest/gtest.h>
 #include <stdlib.h>
@@ -12,7 +12,7 @@
 
 namespace lidar::test {
 
-/// Returns the bytes of a file; none if it cannot be read.
+/// Returns the bytes of a file, or an empty text if the file cannot be read.
 inline std::string ReadFile(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};
@@ -23,7 +23,7 @@ inline std::ptrdiff_t OpenFiles() {
   return std::distance(std::filesystem::directory_iterator("/proc/self/fd"), {});
 }
 
-/// A new folder, which is removed with this object.
+/// Creates a temporary folder, and removes it when this object is destroyed.
 class TempFolder {
  public:
   TempFolder() : path_(std::filesystem::temp_directory_path() / "lidar-test-XXXXXX") {
@@ -42,7 +42,7 @@ class TempFolder {
   std::string path_;
 };
 
-/// A test with a folder of its own.
+/// A test fixture with a temporary folder.
 class FolderTest : public ::testing::Test {
  private:
   const TempFolder owner_;

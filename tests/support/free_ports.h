@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Ports for programs and elements that take theirs as an option.
+// Finds free ports for programs and elements that have an option for their port.
 #pragma once
 #include <gio/gio.h>
 
@@ -13,8 +13,9 @@
 
 namespace lidar::test {
 
-/// Returns a port that is free now, below those that the kernel assigns. Until this process ends,
-/// no other call here or in ports.py returns it, in any process.
+/// Returns a port that is free now and lies below the ports that the kernel assigns by itself.
+/// Until this process ends, neither FreePort() nor ports.py returns the same port again, in any
+/// process.
 inline std::uint16_t FreePort(GSocketType type = G_SOCKET_TYPE_DATAGRAM) {
   using Object = std::unique_ptr<void, decltype(&g_object_unref)>;
   static std::vector<Object> claims;
@@ -41,7 +42,7 @@ inline std::uint16_t FreePort(GSocketType type = G_SOCKET_TYPE_DATAGRAM) {
 }
 inline std::uint16_t FreeTcpPort() { return FreePort(G_SOCKET_TYPE_STREAM); }
 
-/// Returns different UDP ports.
+/// Returns `count` different UDP ports that are free.
 inline std::vector<int> FreePorts(std::size_t count) {
   std::set<int> ports;
   while (ports.size() < count) ports.insert(FreePort());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The course of a scripted run of an element, and the golden file that it must match.
+// Runs an element by a script, and compares what the element did with a golden file.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -20,18 +20,21 @@
 
 namespace lidar::test {
 
-/// The pads of an element that a course uses; null: none.
+/// The names of the element's pads that a course uses. A name is null if the element has no such
+/// pad.
 struct CoursePads {
   const char* sink = "sink";
   const char* src = "src";
 };
 
-/// Plays an element that `launch` describes, and writes down each step with all that it causes.
-/// Upstream is live, with a latency of 20 ms.
+/// Plays the element that `launch` describes. Records each step of the script and everything that
+/// the element outputs or posts because of it. The harness upstream of the element is live and has
+/// a latency of 20 ms.
 class Course {
  public:
   explicit Course(const std::string& launch, const CoursePads& pads = {}, bool with_bytes = true) {
-    // Some elements number their streams at random.
+    // Some elements choose the numbers of their streams at random. A fixed seed makes these numbers
+    // the same in each run.
     g_random_set_seed(1);
     const gst::ElementPtr element(gst_parse_launch(launch.c_str(), nullptr));
     h_.reset(gst_harness_new_with_element(element.get(), pads.sink, pads.src));
@@ -56,7 +59,8 @@ class Course {
     trace_->Begin(caps);
     Note("begin");
   }
-  /// Starts a source, and waits until `count` lines begin with `line`.
+  /// Starts a source element, and waits until `count` lines of the trace begin with `line`. Notes
+  /// the step as `what`.
   void Play(const std::string& what, const char* line, std::size_t count = 1) {
     gst_element_set_state(element(), GST_STATE_PLAYING);
     Await(what, line, count);
@@ -72,13 +76,14 @@ class Course {
     Note(what);
   }
   guint64 Stat(const char* name) { return StatOf(element(), name); }
-  /// Waits until the statistic `name` is `wanted`.
+  /// Waits until the element's statistic `name` has the value `wanted`.
   void AwaitStat(const char* name, guint64 wanted) {
     EXPECT_TRUE(Eventually([&] { return Stat(name) == wanted; }))
         << name << " is " << Stat(name) << " instead of " << wanted;
   }
   void AddLine(const std::string& line) { lines_.push_back(line); }
-  /// Replaces text that differs between runs, such as ports, by `word`. Leaves out empty lines.
+  /// Replaces each match of `pattern` in the recorded lines by `word`. This is for text that
+  /// differs between runs, such as a port. A line that is empty afterwards is left out.
   void Hide(const std::string& pattern, const std::string& word) {
     hidden_.emplace_back(std::regex(pattern), word);
   }
@@ -95,7 +100,8 @@ class Course {
     const GstFlowReturn flow = gst_pad_push(h_->srcpad, buffer.release());
     Note(what + ": " + gst_flow_get_name(flow));
   }
-  /// Pushes a buffer, and waits until `count` lines begin with `line`.
+  /// Pushes a buffer, and waits until `count` lines of the trace begin with `line`. Notes the step
+  /// as `what`.
   void PushUntil(const std::string& what, gst::BufferPtr buffer, const char* line,
                  std::size_t count = 1) {
     CountWhileItLives(buffer.get());
@@ -118,7 +124,7 @@ class Course {
   }
   void Gap(GstClockTime at, GstClockTime lasts) { PushEvent("gap", gst_event_new_gap(at, lasts)); }
   void Tag() { PushEvent("tag", gst_event_new_tag(gst_tag_list_new_empty())); }
-  /// Sends events that the element does not know, downstream and upstream.
+  /// Pushes an event of an unknown type into the element from both sides: downstream and upstream.
   void Unknown() {
     PushEvent("unknown", gst_event_new_custom(GST_EVENT_CUSTOM_DOWNSTREAM,
                                               gst_structure_new_empty("unknown-event")));
@@ -135,7 +141,8 @@ class Course {
     trace_->Stop();
     Note("stop");
   }
-  /// Sends the element queries from downstream: for its latency, and others in `format`.
+  /// Sends queries to the element from downstream, and notes the answers. Duration, position and
+  /// seeking are queried in `format`.
   void Ask(GstFormat format = GST_FORMAT_TIME) {
     const gst::QueryPtr latency(gst_query_new_latency());
     if (Answers(latency.get())) {
@@ -163,7 +170,8 @@ class Course {
     }
     Note("asked");
   }
-  /// Notes a step with all that it has caused.
+  /// Notes a step, and after it everything that the element has output or posted since the last
+  /// step.
   void Note(const std::string& step) {
     lines_.push_back("- " + step);
     for (std::string& line : trace_->Take()) {
@@ -171,12 +179,14 @@ class Course {
         NoteStats(line);
         continue;
       }
-      if (line == "upstream event reconfigure") continue;  // of the harness
-      if (h_->sinkpad == nullptr && line.find("latency") != std::string::npos)
-        continue;                                                               // of base classes
-      if (line.find("grants a receive buffer") != std::string::npos) continue;  // of the machine
+      // These lines do not come from the element itself: an event of the harness, messages about
+      // latency from GStreamer's base classes of sources, and the size of the receive buffer, which
+      // depends on the machine.
+      if (line == "upstream event reconfigure") continue;
+      if (h_->sinkpad == nullptr && line.find("latency") != std::string::npos) continue;
+      if (line.find("grants a receive buffer") != std::string::npos) continue;
       line = Steady(line);
-      // The order of fields differs between GStreamer's releases.
+      // The order of the fields of caps differs between releases of GStreamer.
       if (line.rfind("event caps ", 0) == 0) {
         Lines fields = FieldsOf(line);
         std::sort(fields.begin() + 1, fields.end());
@@ -207,9 +217,9 @@ class Course {
     return (h_->sinkpad != nullptr ? gst_pad_peer_query(h_->sinkpad, query)
                                    : gst_element_query(element(), query)) != FALSE;
   }
-  /// Leaves out how long something took if it took any time, arrays of doubles, and digits of
-  /// doubles that differ between machines: a number halfway between two of three digits is the
-  /// upper one, and a tiny one is 0.
+  /// Removes what differs between runs or machines: durations that are not 0, and arrays of
+  /// doubles. Rounds other doubles to three digits. A value halfway between two rounded values is
+  /// rounded up, and a tiny value becomes 0.
   static std::string Steady(const std::string& line) {
     static const std::regex kClock(
         "(encode-time|decode-time|scan-time| age)=\\([a-z0-9]+\\)[1-9][0-9]*");
@@ -228,7 +238,8 @@ class Course {
     }
     return rounded + steady;
   }
-  /// Notes the changed fields of our own classes: GStreamer's fields differ between releases.
+  /// Notes the statistics that have changed since the last step. Leaves out the fields of
+  /// GStreamer's base classes, because these fields differ between releases.
   void NoteStats(std::string line) {
     for (const char* first : {"scans-sent", "slices-received"})
       if (const std::size_t own = line.find(first); own != std::string::npos)
@@ -256,15 +267,16 @@ class Course {
     return line;
   }
 
-  std::atomic<int> buffers_{0};  // number of pushed buffers that still exist
+  std::atomic<int> buffers_{0};  // the number of pushed buffers that still exist
   Harness h_;
   std::optional<RunTrace> trace_;
   Lines lines_;
-  Lines stats_;  // the fields that were noted last
+  // The fields of the statistics after the last step.
+  Lines stats_;
   std::vector<std::pair<std::regex, std::string>> hidden_;
 };
 
-/// A course, and the name of the course and of its file.
+/// The script of a course. The golden file has the same name as the course.
 struct ScriptedCourse {
   std::string name;
   std::string launch;
@@ -288,7 +300,7 @@ class GoldenCourse : public ::testing::Test {
   const bool with_bytes_;
 };
 
-/// Adds a test for each course to the program, before main(). Returns the number of tests.
+/// Registers a test for each course. Must be called before main(). Returns the number of tests.
 inline std::size_t AddGoldenCourses(const char* suite, const std::vector<ScriptedCourse>& courses,
                                     const std::string& folder, bool with_bytes = true) {
   for (const ScriptedCourse& course : courses)

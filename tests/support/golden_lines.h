@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Compares lines with a file.
+// Compares the lines of a text with a golden file.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -13,7 +13,8 @@ namespace lidar::test {
 
 using Lines = std::vector<std::string>;
 
-/// Expects the lines of the file, which UPDATE_GOLDEN=1 in the environment writes.
+/// Expects that `lines` are those of the file at `path`. If UPDATE_GOLDEN is set in the
+/// environment, writes the file instead.
 inline void ExpectGoldenLines(const Lines& lines, const std::string& path) {
   if (std::getenv("UPDATE_GOLDEN") != nullptr) {
     std::ofstream file(path);
@@ -28,7 +29,7 @@ inline void ExpectGoldenLines(const Lines& lines, const std::string& path) {
   EXPECT_EQ(lines.size(), n) << path << " is shorter: " << lines[n];
 }
 
-/// Writes `parts` to an ostream, and returns the text.
+/// Returns the text that an ostream makes of `parts`.
 template <class... Parts>
 std::string Line(const Parts&... parts) {
   std::ostringstream line;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// GstHarness with an owner.
+// An owner of a GstHarness, and functions that several tests need.
 #pragma once
 #include <gst/check/gstharness.h>
 
@@ -20,14 +20,14 @@ inline void SetPlaying(GstHarness* h) {
   g_assert_cmpint(change, !=, GST_STATE_CHANGE_FAILURE);
 }
 
-/// The event of a segment that begins at 0.
+/// Returns a segment event. The segment begins at 0.
 inline GstEvent* NewSegment(GstFormat format = GST_FORMAT_TIME) {
   GstSegment segment;
   gst_segment_init(&segment, format);
   return gst_event_new_segment(&segment);
 }
 
-/// Flushes as a seek does, and begins a segment at 0.
+/// Flushes the element as a seek does, and begins a new segment at 0.
 inline void Flush(GstHarness* h) {
   gst_harness_push_event(h, gst_event_new_flush_start());
   gst_harness_push_event(h, gst_event_new_flush_stop(TRUE));

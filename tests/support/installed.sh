@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Sourced with `source` and `build` set: lays libgstlidar out in $work as meson install does, and
-# sets `flags` to what pkg-config says of it.
+# To be sourced. `source` and `build` must be set. Makes a folder $work that contains libgstlidar in
+# the layout of `meson install`, and sets `flags` to the compiler flags that pkg-config prints for
+# it.
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 mkdir -p "$work/include/gstreamer-1.0/gst/lidar" "$work/lib"

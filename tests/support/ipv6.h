@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A check whether this machine has IPv6, for tests that use its loopback.
+// Checks whether this machine has IPv6. Tests need to know that before they use the loopback
+// address of IPv6.
 #pragma once
 #include <netinet/in.h>
 #include <sys/socket.h>

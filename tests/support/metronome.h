@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Measures how long something takes on a machine that may not let the program run.
+// Measures time in a way that does not count the time in which the machine does not run this
+// program.
 #pragma once
 #include <atomic>
 #include <chrono>
@@ -7,8 +8,8 @@
 
 namespace lidar::test {
 
-/// Time as the steps of a thread that sleeps: while the machine lets the program wait, this thread
-/// makes no step either.
+/// Measures time as the number of steps of a thread that sleeps for a fixed time in each step.
+/// While a busy machine does not run this process, the thread makes no steps.
 class Metronome {
  public:
   Metronome()

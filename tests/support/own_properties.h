@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The properties that a test's table must contain.
+// Checks that a table of a test names every writable property of an element.
 #pragma once
 #include <gst/gst.h>
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 
 namespace lidar::test {
 
-/// Returns the names of an element's writable properties that its own classes add.
+/// Returns the names of the writable properties that the classes of this project add to an element.
 inline std::set<std::string> OwnWritableProperties(const std::string& element_name) {
   const gst::ElementPtr element(gst_element_factory_make(element_name.c_str(), nullptr));
   gst_object_ref_sink(element.get());
@@ -29,7 +29,8 @@ inline std::set<std::string> OwnWritableProperties(const std::string& element_na
   return names;
 }
 
-/// Expects that a table of effects, each of a `property`, has all properties of the element.
+/// Expects that each writable property of the element is the `property` of at least one entry of
+/// `effects`.
 template <class Effects>
 void ExpectEachPropertyIn(const Effects& effects, const std::string& element_name) {
   std::set<std::string> tried;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Reads fields of protobuf messages, for tests of what writes them.
+// Reads the fields of protobuf messages, for tests of the code that writes the messages.
 #pragma once
 #include <cstring>
 #include <map>
@@ -11,7 +11,8 @@
 
 namespace lidar::test {
 
-/// The fields of one message by their numbers, in order; the last value of each kind is read.
+/// The fields of a protobuf message by their numbers. A field of bytes keeps all its values, in
+/// order. A field of numbers keeps its last value.
 class ProtoMessage {
  public:
   explicit ProtoMessage(ByteView bytes) {

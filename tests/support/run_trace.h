@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The output, events and messages of an element as text, so that two runs can be compared.
+// Records the buffers, events and messages of an element as lines of text, so that two runs can be
+// compared.
 #pragma once
 #include <algorithm>
 #include <mutex>
@@ -24,8 +25,9 @@ inline bool HasLine(const Lines& lines, const std::string& part) {
 
 class RunTrace {
  public:
-  /// Watches the element of `h`, which must outlive this object. `with_bytes` adds the bytes of
-  /// buffers: with elements that number their streams at random, these differ between runs.
+  /// Records the element of `h`, which must outlive this object. If `with_bytes` is true, a
+  /// buffer's line has a checksum of its bytes. If an element chooses the number of its stream at
+  /// random, the checksum differs between runs.
   explicit RunTrace(GstHarness* h, bool with_bytes = true)
       : h_(h), with_bytes_(with_bytes), bus_(h->element) {
     if (h->sinkpad != nullptr) Watch(h->sinkpad);
@@ -37,16 +39,19 @@ class RunTrace {
   RunTrace(const RunTrace&) = delete;
   RunTrace& operator=(const RunTrace&) = delete;
 
-  /// Adds what passes another pad of the element. All threads may call it.
+  /// Records buffers and events that pass `pad`, too. `pad` is a pad beside the harness's sink pad.
+  /// Any thread may call this.
   void Watch(GstPad* pad) {
-    // Each buffer of a list comes alone, too, because no pad that is watched takes lists.
+    // A probe for buffer lists is not needed: the watched pads accept no lists, so GStreamer passes
+    // the buffers of a list one by one.
     constexpr auto kAll = static_cast<GstPadProbeType>(GST_PAD_PROBE_TYPE_BUFFER |
                                                        GST_PAD_PROBE_TYPE_EVENT_DOWNSTREAM);
     const std::lock_guard lock(mutex_);
     probes_.emplace_back(GST_PAD(gst_object_ref(pad)),
                          gst_pad_add_probe(pad, kAll, OnData, this, nullptr));
   }
-  /// Links each pad that the element adds from now on, and adds what passes it with the pad's name.
+  /// Links each source pad that the element adds from now on, and records what passes it. The lines
+  /// have the name of the pad.
   void TakeAddedPads() {
     added_ = g_signal_connect(h_->element, "pad-added", G_CALLBACK(OnAdded), this);
   }
@@ -58,14 +63,15 @@ class RunTrace {
     return static_cast<std::size_t>(std::count_if(lines_.begin(), lines_.end(), begins_so) +
                                     std::count_if(messages_.begin(), messages_.end(), begins_so));
   }
-  /// Adds the events that a pad of the harness gets from the element.
+  /// Records the events that the element sends upstream to `pad`, which belongs to the harness.
   void WatchUpstream(GstPad* pad) {
     const std::lock_guard lock(mutex_);
     probes_.emplace_back(
         GST_PAD(gst_object_ref(pad)),
         gst_pad_add_probe(pad, GST_PAD_PROBE_TYPE_EVENT_UPSTREAM, OnUpstream, this, nullptr));
   }
-  /// Starts the element, with the events that come before the first buffer.
+  /// Starts the element, and pushes the events that precede the first buffer: stream-start, caps
+  /// and segment.
   void Begin(const std::string& caps) {
     gst_harness_play(h_);
     gst_pad_push_event(h_->srcpad, gst_event_new_stream_start("run"));
@@ -84,7 +90,8 @@ class RunTrace {
   }
   void Stop() { gst_element_set_state(h_->element, GST_STATE_NULL); }
 
-  /// The lines since the last call: buffers, events, messages, and last the stats.
+  /// Returns the lines since the last call: first buffers and events, then messages, and last the
+  /// statistics.
   Lines Take() {
     Lines taken;
     {
@@ -131,7 +138,8 @@ class RunTrace {
     gst_pad_link(pad, sink);
     gst_object_unref(sink);
   }
-  /// Returns " on imu" for a pad that is not the harness's own.
+  /// Returns " on NAME" for an added pad with this name, and an empty text for the sink pad of the
+  /// harness.
   std::string PlaceOf(GstPad* pad) const {
     const gst::PadPtr peer(pad == h_->sinkpad ? nullptr : gst_pad_get_peer(pad));
     return peer ? std::string(" on ") + GST_PAD_NAME(peer.get()) : "";
@@ -171,7 +179,8 @@ class RunTrace {
     if (gst_lidar_buffer_get_pose(buffer, &pose))
       line += " pose " + std::to_string(pose.position[0]);
     const GstClockTime capture = gst_lidar_buffer_get_capture_time(buffer);
-    // Some elements use the time of day for the first buffer.
+    // Some elements use the current time of day as the capture time of the first buffer. Such a
+    // time is written relative to the first one.
     constexpr GstClockTime kYear2020 = 1'577'836'800 * GST_SECOND;
     const bool is_today = GST_CLOCK_TIME_IS_VALID(capture) && capture > kYear2020;
     if (is_today && !GST_CLOCK_TIME_IS_VALID(first_capture_)) first_capture_ = capture;
@@ -227,7 +236,8 @@ class RunTrace {
         return;
       }
       default:
-        return;  // GStreamer's own message
+        // Messages of other types are those of GStreamer itself.
+        return;
     }
     const gst::ErrorPtr error(raw);
     lines->push_back(std::string("message ") + GST_MESSAGE_TYPE_NAME(message) + " " +
@@ -238,8 +248,8 @@ class RunTrace {
   const bool with_bytes_;
   const ElementBus bus_;
   gulong added_ = 0;
-  Lines messages_;    // of the bus, since the last Take()
-  std::mutex mutex_;  // guards all below
+  Lines messages_;    // the messages that Count() has read since the last Take()
+  std::mutex mutex_;  // guards the members below
   std::vector<std::pair<gst::PadPtr, gulong>> probes_;
   Lines lines_;
   GstClockTime first_capture_ = GST_CLOCK_TIME_NONE;

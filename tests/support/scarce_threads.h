@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A machine on which the calling thread can start no other thread: the test program's
-// pthread_create() replaces that of libc. Include this header in one file of a program.
+// Simulates a machine on which the calling thread cannot start other threads: this header defines a
+// pthread_create(), which replaces that of libc. Only one source file of a program may include it.
 #pragma once
 #include <dlfcn.h>
 #include <pthread.h>
@@ -11,7 +11,7 @@ namespace lidar::test {
 
 inline thread_local bool no_more_threads = false;
 
-/// The calling thread can start no thread while this object lives.
+/// While an object of this class exists, the thread that created it cannot start other threads.
 class ScarceThreads {
  public:
   ScarceThreads() { no_more_threads = true; }

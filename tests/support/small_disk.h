@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A disk that is full.
+// Simulates a disk that is full.
 #pragma once
 #include <sys/resource.h>
 
@@ -7,7 +7,8 @@
 
 namespace lidar::test {
 
-/// Limits files to `size` bytes during its lifetime, as a full disk would.
+/// Limits the size of files to `size` bytes while this object exists. A write beyond the limit
+/// fails, as it does on a full disk.
 class SmallDisk {
  public:
   explicit SmallDisk(rlim_t size) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Self-signed certificates, each in a file with its key and in a file without.
+// Makes self-signed certificates. Each certificate is in two files: one has its private key, too.
 #pragma once
 #include <glib.h>
 #include <gtest/gtest.h>
@@ -19,7 +19,8 @@ class TestCertificates {
 
   std::string Public(const std::string& name) const { return folder_ + "/" + name + ".crt"; }
   std::string WithKey(const std::string& name) const { return folder_ + "/" + name + ".pem"; }
-  /// Returns the properties of a screamsink or screamsrc that has `own` and trusts `peer`.
+  /// Returns the properties of a screamsink or screamsrc that uses the certificate `own` and trusts
+  /// the certificate `peer`.
   std::string Trusting(const std::string& own, const std::string& peer) const {
     return " dtls-certificate=" + WithKey(own) + " dtls-peer-certificate=" + Public(peer) + " ";
   }

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# To be sourced: builds the program `victim` and what it plays, and sets `victim_args` for the scripts that use it.
-# BUILD_DIR names the build, build-asan for example.
+# To be sourced by scripts that run the program `victim`. Builds `victim` and the plugins that it
+# needs, and sets `victim_args` to its options. The variable BUILD_DIR may name another build
+# folder, build-asan for example.
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 build=${BUILD_DIR:-$root/build}
 [ -f "$build/build.ninja" ] || meson setup "$build" "$root" >"$build.log" 2>&1
