@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// RTCP of both ends: RFC 8888 feedback, alone and in compounds, and the sender's reports.
+// Parses RTCP packets of both ends: feedback of RFC 8888, alone and in compound packets, and the
+// sender's reports.
 #include "src/rtcp/ccfb.h"
 #include "src/rtcp/sender_report.h"
 #include "tests/fuzz/fuzz.h"
@@ -15,7 +16,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (!feedback) continue;
     for (const auto reading :
          {lidar::rtcp::NumReports::kCount, lidar::rtcp::NumReports::kCountMinusOne}) {
-      // Feedback that was read can be written again, in at most 4 bytes more.
+      // Feedback that was parsed can be written again. The new packet is at most 4 bytes longer
+      // than the old one.
       const auto again = lidar::rtcp::BuildCcfb(*feedback, reading);
       FUZZ_CHECK(again.size() <= packet.size + 4);
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Coded clouds without a sensor model.
+// Decodes slices of clouds that have no sensor model.
 #include <cmath>
 #include <cstring>
 #include <string>
@@ -15,25 +15,27 @@ using namespace lidar::codec;
 
 constexpr std::uint32_t kMaxPoints = 4'096;
 
-/// Returns a name for a field: "line" or "timestamp", by which the encoder looks for paths, or
-/// another name if `others` has that field.
+/// Returns a name for a field of this type: "line" or "timestamp", because the encoder looks for
+/// paths of beams only if a cloud has such fields. If `others` has a field with that name, returns
+/// another name.
 std::string NameOf(FieldType type, const PointFields& others) {
   const char* name = type == FieldType::kU8 ? "line" : "timestamp";
   return others.Find(name) == nullptr ? name : "f" + std::to_string(others.all().size());
 }
 
-/// Returns a layout of points with the fields of the slice.
+/// Returns a layout that has x, y, z and the exact fields of the slice.
 CloudLayout LayoutFor(ByteView section) {
   PointFields fields;
   for (const char* axis : {"x", "y", "z"}) fields.Add(axis, FieldType::kF32);
   const auto types = cloud::ExactTypesOf(section);
-  // Three names are taken by x, y and z.
+  // A layout has at most kMaxFields fields. Three of them are x, y and z.
   for (std::size_t k = 0; types && k < types->size() && k + 3 < PointFields::kMaxFields; ++k)
     fields.Add(NameOf((*types)[k], fields), (*types)[k]);
   return {fields, fields.MinimumStep()};
 }
 
-/// Checks that an encoder keeps fields and order of the slice, too.
+/// Encodes the points again with all other fields and their order. Checks that decoding returns the
+/// same values.
 void CheckExact(const CloudLayout& layout, const std::vector<std::uint8_t>& raw) {
   cloud::ExactChoice choice;
   choice.fields = ExactFields(layout.fields);
@@ -64,7 +66,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const bool has_points = geometry.Decode({data, size});
   const CloudLayout layout = LayoutFor(has_points ? geometry.exact_section() : ByteView());
   cloud::ExactDecoder decoder(ExactFields(layout.fields), kMaxPoints);
-  // The slice is decoded twice: the first decoding must not change the second one.
+  // Decodes the slice twice, because the first decoding must not change the result of the second
+  // one.
   const bool first = decoder.Decode({data, size});
   FUZZ_CHECK(first == decoder.Decode({data, size}));
   FUZZ_CHECK(has_points || !first);
@@ -74,7 +77,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   FUZZ_CHECK(decoded.intensity.size() == (geometry.intensity_bits() > 0 ? decoded.size() : 0));
   for (const float v : decoded.xyz) FUZZ_CHECK(std::isfinite(v));
 
-  // A slice that is accepted can be written again, with as many points.
+  // The points of an accepted slice can be encoded again, and their number does not change.
   std::vector<std::uint8_t> raw(decoded.size() * layout.point_step);
   first ? decoder.Write(layout, raw.data()) : WriteXyz(decoded, layout, raw.data());
   auto encoder = cloud::CloudEncoder::Create(layout);

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// CompressedPointCloud2 of peers: zlib, zstd and Draco.
+// Decompresses CompressedPointCloud2 messages that a ROS 2 peer may send: zlib, zstd and Draco.
 #include "ext/ros2/cloud_compression.h"
 #include "tests/fuzz/fuzz.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  constexpr std::size_t kFuzzedBytes = 16U << 20;  // bytes of points: a fuzzer has little memory
+  // The limit of the decoded points [bytes]. It is small, because a fuzzer has little memory.
+  constexpr std::size_t kFuzzedBytes = 16U << 20;
   std::string why;
   const auto message = lidar::cdr::ReadCompressedCloud({data, size}, &why);
   FUZZ_CHECK(message || !why.empty());

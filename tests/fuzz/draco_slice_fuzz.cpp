@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Encoded slices as dracodec gets them: range header, mask, integers, Draco streams. The first
-// byte chooses the geometry and the sensor.
+// Decodes slices as dracodec receives them: range header, mask, integers, and streams of Draco. The
+// first byte of the input chooses the geometry and the sensor.
 #include <vector>
 
 #include "ext/draco/slice_coder.h"
@@ -14,7 +14,8 @@ using lidar::draco::SliceDecoder;
 
 constexpr std::uint32_t kMaxPoints = 1U << 16;
 
-/// Returns a sensor. Rows of 512 columns are coded in lanes, rows of 64 columns are not.
+/// Returns a sensor model. The coder splits rows of 512 columns into lanes, but not rows of 64
+/// columns.
 lidar::SensorModel Sensor(std::uint32_t beams, std::uint32_t columns) {
   lidar::SensorModel model;
   model.columns_per_scan = columns;
@@ -41,7 +42,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto format = Format(data[0]);
   const Geometry geometry = (data[0] & 2) != 0 ? Geometry::kRange : Geometry::kXyz;
   SliceDecoder decoder(format, geometry, kMaxPoints);
-  // The slice is decoded twice: the first decoding must not harm the second one.
+  // Decodes the slice twice, because the first decoding must not change the state that the second
+  // one uses.
   for (int i = 0; i < 2; ++i) {
     const auto shape = decoder.Decode({data + 1, size - 1});
     if (!shape) continue;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Datagrams that anybody may send to a DTLS server: which of them begin a handshake.
+// Checks which datagrams are recognised as the beginning of a DTLS handshake. Any host can send
+// such datagrams to a DTLS server.
 #include <string>
 #include <vector>
 
@@ -22,11 +23,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const bool begins = data[kFragmentOffset] == 0 && data[kFragmentOffset + 1] == 0 &&
                       data[kFragmentOffset + 2] == 0;
   FUZZ_CHECK(hello.size() == (begins ? length : 0));
-  FUZZ_CHECK(!IsOfHello({data, kRecordHeader + length - 1}));    // cut off
-  FUZZ_CHECK(HelloIn({data, kRecordHeader + length}) == hello);  // without what follows
+  // A record that is cut off is not accepted.
+  FUZZ_CHECK(!IsOfHello({data, kRecordHeader + length - 1}));
+  // Bytes after the record do not change the result.
+  FUZZ_CHECK(HelloIn({data, kRecordHeader + length}) == hello);
   std::vector<std::uint8_t> other(data, data + size);
   for (std::size_t at = 5; at < 11; ++at) other[at] ^= 0xFF;
-  FUZZ_CHECK(HelloIn({other.data(), other.size()}) == hello);  // repeated
+  // A repeated hello has another sequence number, and gives the same result.
+  FUZZ_CHECK(HelloIn({other.data(), other.size()}) == hello);
   for (const std::size_t epoch : {3U, 4U}) {
     other[epoch] = 1;
     FUZZ_CHECK(!IsOfHello({other.data(), other.size()}));

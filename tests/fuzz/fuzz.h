@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Parts of a fuzz target: libFuzzer's entry point, and checks that also hold without asserts.
+// Declares the entry point of libFuzzer, and defines checks that remain when asserts are disabled.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
-/// Ends the process if `condition` does not hold; libFuzzer reports that as a finding.
+/// Ends the process if `condition` is false. libFuzzer reports a process that ends as a finding.
 #define FUZZ_CHECK(condition)                                                        \
   do {                                                                               \
     if (!(condition)) {                                                              \

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Frames of a capture down to UDP, IP fragments put together. The first byte chooses the link type;
-// then frames follow, each after 2 bytes of size.
+// Reads the frames of a capture down to UDP, and reassembles IP fragments. The first byte of the
+// input chooses the link type. Each frame that follows has its size in 2 bytes before it.
 #include "src/ouster/udp_datagram.h"
 #include "tests/fuzz/fuzz.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// MCAP files, with and without a summary.
+// Reads MCAP files, with their summary and without it.
 #include <memory>
 #include <string>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Payloads of the mixing coder. The first byte chooses the sensor, the bits of the intensity, the
-// grid, and whether the decoder has a memory of earlier scans.
+// Decodes payloads of the mixing coder. The first byte of the input chooses the sensor, the number
+// of intensity bits, the grid of ranges, and whether the decoder remembers earlier scans.
 #include "src/codec/block_memory.h"
 #include "src/codec/mixing/mixing_codec.h"
 #include "src/codec/mixing/start_states.h"
@@ -8,7 +8,8 @@
 
 namespace {
 
-// Reads the start states before the first input, because each input has a time limit.
+// Loads the trained start states before the first input, because the time for each input is
+// limited.
 [[maybe_unused]] const auto& kStart = lidar::codec::mixing::Trained();
 
 lidar::SensorModel Sensor(std::uint32_t beams, std::uint32_t columns) {
@@ -19,7 +20,7 @@ lidar::SensorModel Sensor(std::uint32_t beams, std::uint32_t columns) {
   return model;
 }
 
-/// Returns the memory of three scans of walls, poles, gaps and far returns.
+/// Returns the memory that a decoder has after three scans with walls, poles, gaps and far returns.
 std::shared_ptr<lidar::codec::BlockMemory> Before(const lidar::codec::RangeImage& like,
                                                   const lidar::RangeGrid& grid) {
   lidar::codec::RangeImage image = like;
@@ -35,7 +36,7 @@ std::shared_ptr<lidar::codec::BlockMemory> Before(const lidar::codec::RangeImage
   return memory;
 }
 
-/// Decodes once, without memory if `before` is null.
+/// Decodes the payload once. The decoder has no memory of earlier scans if `before` is null.
 bool Decode(lidar::codec::MixingDecoder* decoder, lidar::ByteView payload,
             const lidar::RangeGrid& grid, unsigned bits, const lidar::codec::BlockMemory* before,
             lidar::codec::RangeImage* image) {
@@ -51,13 +52,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const unsigned choice = data[0];
   const lidar::SensorModel sensor = Sensor((choice & 1) != 0 ? 16 : 4, (choice & 2) != 0 ? 96 : 32);
   const unsigned bits = (choice & 4) == 0 ? 0 : (choice & 8) != 0 ? 8 : 5;
-  // The steps are from lossless to 19 m.
+  // The four possible steps reach from 1 mm, which is lossless, to 19 m.
   const lidar::RangeGrid grid(1, 1 + (choice >> 4 & 3) * (choice >> 4 & 3) * 2'111);
   lidar::codec::RangeImage image;
   image.beams = static_cast<std::uint32_t>(sensor.beams.size());
   image.columns = (choice & 64) != 0 ? sensor.columns_per_scan : sensor.columns_per_scan / 2;
   lidar::codec::MixingDecoder decoder(sensor);
-  // The slice is decoded twice: the first decoding must not change the second one.
+  // Decodes the slice twice, because the first decoding must not change the result of the second
+  // one.
   const auto before = (choice & 128) != 0 ? Before(image, grid) : nullptr;
   const bool first = Decode(&decoder, {data + 1, size - 1}, grid, bits, before.get(), &image);
   const auto ranges = image.ranges;
@@ -67,8 +69,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   FUZZ_CHECK(image.ranges == ranges && ranges.size() == image.size());
   FUZZ_CHECK(image.intensity.size() == (bits > 0 ? image.size() : 0));
 
-  // A payload that is accepted can be encoded again: with the same ranges, or if bins may be
-  // chosen, with ranges within the error.
+  // The image of an accepted payload can be encoded again. Its ranges do not change. If the encoder
+  // may choose other bins, the ranges stay within the error.
   lidar::codec::MixingEncoder encoder(sensor);
   std::vector<std::uint8_t> payload;
   lidar::codec::MixingSettings settings;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Messages of NATS that any client may publish: lines "Name: value" as headers, and after an empty
-// line the payload, which is read as caps, too.
+// Reads messages that any client of a NATS server may publish. The input has the headers as lines
+// "Name: value". After an empty line it has the payload, which is also read as caps.
 #include <gst/gst.h>
 
 #include <string>
@@ -16,7 +16,8 @@ namespace {
 
 using namespace lidar::nats;
 
-/// Sets the headers, and returns the text after them.
+/// Sets the headers of `message` from the lines at the beginning of `text`. Returns the text after
+/// the empty line.
 std::string_view SetHeaders(natsMsg* message, std::string_view text) {
   while (!text.empty()) {
     const auto end = text.find('\n');
@@ -31,7 +32,8 @@ std::string_view SetHeaders(natsMsg* message, std::string_view text) {
   return text;
 }
 
-/// Checks that a message that was read can be written, and that reading it again gives the same.
+/// Checks that a message that was read can be written, and that reading the result gives the same
+/// message.
 void CheckComesBack(const ReadMessage& read) {
   const MessagePtr said = WriteMessage("a", nullptr, read.format_id, read.place, read.buffer.get());
   FUZZ_CHECK(said);
@@ -64,7 +66,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   static const bool ready = [] {
     if (!gst_init_check(nullptr, nullptr, nullptr)) return false;
     gst_lidar_init();
-    return nats_Open(-1) == NATS_OK;  // connections would open the library otherwise
+    // Opens the library. A connection would do that, but this program makes none.
+    return nats_Open(-1) == NATS_OK;
   }();
   FUZZ_CHECK(ready);
   const std::string_view text = lidar::fuzz::Text(bytes, size);

@@ -9,7 +9,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   auto metadata = lidar::ouster::ParseMetadata(lidar::fuzz::Text(data, size), &error);
   FUZZ_CHECK(metadata.has_value() == error.empty());
   if (!metadata) return 0;
-  // Metadata that is parsed must suffice for a stream: a packet of zeros is then accepted.
+  // Metadata that the parser accepts must be sufficient for a stream. The stream then accepts a
+  // packet of zeros.
   const auto bytes = metadata->model.Serialise();
   FUZZ_CHECK(lidar::SensorModel::Parse({bytes.data(), bytes.size()}).has_value());
   const std::size_t packet_size = metadata->format.packet_size();

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Packets of an Ouster sensor through parser, CRC check, clocks and batcher. The first byte chooses
-// the profile. Each packet is then a byte of time step [ms] and a change to the packet before it: 2
-// bytes of offset, 1 of length, and the new bytes.
+// Passes packets of an Ouster sensor through parser, CRC check, clocks and batcher. The first byte
+// of the input chooses the profile. Each packet differs from the packet before it: the input has a
+// time step [ms] in 1 byte, the offset of the change in 2 bytes, its length in 1 byte, and the new
+// bytes.
 #include <string>
 #include <vector>
 
@@ -46,7 +47,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto change = r.Bytes(std::min<std::size_t>(r.U8(), r.remaining()));
     for (std::size_t i = 0; i < change.size; ++i)
       packet[(offset + i) % packet.size()] = change.data[i];
-    // Offsets from 0xFF00 on cut the packet short.
+    // An offset of 0xFF00 or more cuts the packet to the length in its lower byte.
     const std::size_t n = offset >> 8 == 0xFF ? offset & 0xFF : packet.size();
     const std::vector<std::uint8_t> sent(
         packet.begin(), packet.begin() + static_cast<std::ptrdiff_t>(std::min(n, packet.size())));

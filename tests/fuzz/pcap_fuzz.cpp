@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Capture files, as libpcap and we read them.
+// Reads capture files with PcapReader, which uses libpcap. Reads each file twice, if it can be
+// rewound.
 #include <sys/mman.h>
 #include <unistd.h>
 

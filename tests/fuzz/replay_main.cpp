@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Runs a fuzz target over every file of its corpus, as an ordinary test and with any compiler.
+// Runs a fuzz target over every file of its corpus. This is an ordinary test, which needs no fuzzer
+// and works with any compiler.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -32,15 +33,16 @@ TEST(Corpus, IsHandledFileByFile) {
   }
 }
 
-// Inputs that are too many for a corpus: each file is cut short at every length of a header, and at
-// 40 more.
+// Runs the target on the beginnings of each file. A beginning has each length below kHeaders, and
+// about 40 greater lengths. A corpus could not contain so many files.
 TEST(Corpus, IsHandledWhenCutShort) {
   for (const auto& entry : std::filesystem::directory_iterator(corpus)) {
     const auto bytes = Read(entry.path());
     constexpr std::size_t kHeaders = 64;
     const std::size_t step = 1 + bytes.size() / 40;
     for (std::size_t n = 0; n < bytes.size(); n += n < kHeaders ? 1 : step) {
-      // A copy of that size, so that AddressSanitizer sees a read past the end.
+      // The buffer has exactly the size of the input, so that AddressSanitizer detects a read past
+      // its end.
       const std::vector<std::uint8_t> cut(bytes.begin(),
                                           bytes.begin() + static_cast<std::ptrdiff_t>(n));
       EXPECT_EQ(LLVMFuzzerTestOneInput(cut.data(), cut.size()), 0) << entry.path() << " " << n;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// ROS 2 messages as CDR, from DDS peers and from recordings.
+// Reads ROS 2 messages in CDR, which come from DDS peers or from recordings.
 #include <cmath>
 #include <optional>
 #include <vector>
@@ -15,7 +15,8 @@ namespace {
 using lidar::ByteView;
 using Bytes = std::vector<std::uint8_t>;
 
-/// Checks that a message that was read can be written, and that reading it again gives the same.
+/// Checks that a message that was read can be written, and that reading the result gives the same
+/// message.
 template <class Message>
 void CheckComesBack(ByteView data, std::optional<Message> (*read)(ByteView),
                     Bytes (*write)(const Message&)) {
@@ -27,7 +28,8 @@ void CheckComesBack(ByteView data, std::optional<Message> (*read)(ByteView),
 }
 
 void CheckCloud(ByteView data) {
-  constexpr std::size_t kEnough = 16U << 20;  // bytes of points: a fuzzer has little memory
+  // The limit of the points of a cloud [bytes]. It is small, because a fuzzer has little memory.
+  constexpr std::size_t kEnough = 16U << 20;
   std::string why;
   const auto cloud = lidar::cdr::ReadPointCloud2(data, &why);
   FUZZ_CHECK(cloud || !why.empty());
@@ -45,8 +47,8 @@ void CheckCloud(ByteView data) {
              lidar::cdr::RowStride(*cloud).has_value());
 }
 
-/// Checks that frames from any sender give a transform of finite numbers, or a reason why there is
-/// no transform.
+/// Checks the transforms that a sender may publish. For two frames the tree returns a transform of
+/// finite numbers, or a reason why there is no transform.
 void CheckTree(ByteView data) {
   const auto transforms = lidar::cdr::ReadTransforms(data);
   if (!transforms) return;

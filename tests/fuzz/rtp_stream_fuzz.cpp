@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// RTP payload headers and what the receiver does with them: fragments, accounting, joins and
-// restarts. The input of each packet is a byte each of flags, sequence step and time step [ms], 2
-// bytes of size, and the payload.
+// Passes RTP packets to a receiver: fragments, lost packets, streams that join late, and restarts
+// of the sender. The input has for each packet 1 byte of flags, 1 byte of sequence step, 1 byte of
+// time step [ms], 2 bytes of size, and the payload.
 #include <vector>
 
 #include "src/rtp/receiver.h"
@@ -15,7 +15,8 @@ constexpr std::uint8_t kOtherSsrc = 1;
 constexpr std::uint8_t kFixCrc = 2;
 constexpr std::size_t kCrcOffset = 6;
 
-/// Gives a single unit its right length and CRC, which no fuzzer guesses.
+/// Sets the correct length and CRC of a packet with a single unit, because a fuzzer does not find a
+/// correct CRC by chance.
 void FixCrc(std::vector<std::uint8_t>* payload) {
   if (payload->size() <= kCrcOffset + 4 || (*payload)[0] >> 5 != 0) return;
   const std::size_t header = lidar::rtp::HeaderSize(
@@ -60,7 +61,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   receiver.Finish();
   const auto a = receiver.accounts();
   FUZZ_CHECK(a.packets_received == packets);
-  // Slices of a candidate that never became the stream are not counted.
+  // A new SSRC is a candidate at first. The receiver neither returns nor counts its slices until it
+  // becomes the stream.
   FUZZ_CHECK(a.slices.slices_received == slices);
   FUZZ_CHECK(a.slices.slices_received >= a.slices.scans_complete);
   return 0;

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Builds the fuzz targets with clang, AddressSanitizer and UBSan, and runs each for the time given.
+# Builds the fuzz targets with clang, AddressSanitizer and UBSan, and runs each of them for the
+# given time.
 set -uo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(dirname "$(dirname "$here")")
@@ -77,7 +78,8 @@ fuzz_one() {
   local target=$1
   local grown=$work/$target findings=$work/$target-findings
   mkdir -p "$grown" "$findings"
-  # No input may take a second or a gigabyte. Sanitizers slow the code down, so 5 s are allowed.
+  # No input may need more than a second or a gigabyte. The time limit is 5 s, because the
+  # sanitizers make the code slower.
   "$build/tests/fuzz/fuzz_$target" "$grown" "$here/corpus/$target" -max_total_time="$seconds" \
     -timeout=5 -rss_limit_mb=1024 -max_len=65536 -print_final_stats=1 -artifact_prefix="$findings/" \
     >"$work/$target.log" 2>&1
@@ -90,8 +92,9 @@ fuzz_one() {
   return $status
 }
 
-# merge_one TARGET: adds those inputs of the grown corpus that cover more to the committed one, the
-# smallest first and 64 kB at most, which keeps it small.
+# merge_one TARGET: adds to the committed corpus the inputs of the grown corpus that cover more
+# code. Adds the smallest inputs first, and at most 64 kB of them, so that the committed corpus
+# remains small.
 merge_one() {
   local target=$1 minimal=$work/$target-minimal
   rm -rf "$minimal"

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Transport-wide feedback, to packets that were sent.
+// Maps transport-wide feedback to the packets that were sent.
 #include "src/base/byte_reader.h"
 #include "src/rtcp/twcc_mapper.h"
 #include "tests/fuzz/fuzz.h"
 
-// The input is a base number, and then for each packet an arrival in ticks of 250 us; 0 means that
-// it did not arrive.
+// The input has the base number in 2 bytes. For each packet that follows it has the arrival time in
+// 4 bytes, in ticks of 250 us. A time of 0 means that the packet did not arrive.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace lidar::rtcp;
   TwccMapper mapper;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A coder in one file, by the public API alone: cells of a uniform grid, each as its difference
-// from the point before, in as few bytes as it needs. docs/writing-an-encoder.md walks through it.
+// An encoder and a decoder in one file, which use only the public API. The encoder maps each point
+// to a cell of a uniform grid. It writes the difference to the cell of the previous point in as few
+// bytes as the difference needs. docs/writing-an-encoder.md explains the code.
 #include <gst/lidar/gstlidardecoder.h>
 #include <gst/lidar/gstlidarencoder.h>
 
@@ -12,17 +13,20 @@
 
 #define EXAMPLE_MEDIA_TYPE "application/x-lidar-example"
 
-// A coded slice is this header, then three differences for each point. Numbers are little-endian.
+// A coded slice consists of this header and of three differences for each point. All numbers are
+// little-endian.
 struct Header {
   guint32 points;
   gfloat step;  // m
 };
 constexpr double kMaxCell = 1 << 28;
 constexpr double kFinestStep = 0.001;  // m
-// Half the diagonal of a cube: no point is farther from the middle of its cell.
+// The largest distance between a point and the middle of its cell, for a step of 1. It is half the
+// diagonal of a cube.
 constexpr double kErrorPerStep = 0.8660254;
 
-// Seven bits a byte, lowest first; the sign is the lowest bit.
+// Appends a difference in groups of seven bits, the lowest bits first. The highest bit of a byte is
+// set if another byte follows. The lowest bit of the whole number is the sign.
 static void put_difference(GByteArray* bytes, gint64 difference) {
   guint64 rest = static_cast<guint64>(difference < 0 ? -difference * 2 - 1 : difference * 2);
   do {
@@ -48,7 +52,8 @@ static gfloat middle_of(gint64 cell, gfloat step) {
   return (static_cast<gfloat>(cell) + 0.5F) * step;
 }
 
-// exampledec calls this to decode, and exampleenc to measure its errors. `data` may be any bytes.
+// Decodes a slice. exampledec calls this to get its output, and exampleenc to measure the errors of
+// its slices. `data` may contain any bytes.
 static gboolean decode_slice(const guint8* data, gsize size, guint max_points,
                              std::vector<GstLidarPoint>* points) {
   Header header;
@@ -57,7 +62,8 @@ static gboolean decode_slice(const guint8* data, gsize size, guint max_points,
   const guint8* at = data + sizeof header;
   const guint8* end = data + size;
   points->clear();
-  // A point takes three bytes at least, so a header cannot claim more points than were sent.
+  // Each point has at least three bytes. This check refuses a header whose number of points is too
+  // large for the bytes that were sent.
   if (header.points > max_points || header.points > size / 3 || !std::isfinite(header.step))
     return FALSE;
   std::array<gint64, 3> cell = {0, 0, 0};
@@ -78,7 +84,7 @@ struct ExampleEnc {
   GstLidarEncoder parent;
   gint x_offset;                               // bytes
   guint point_step;                            // bytes
-  std::vector<std::array<gfloat, 3>>* points;  // of the slice that is loaded
+  std::vector<std::array<gfloat, 3>>* points;  // the points of the loaded slice
 };
 using ExampleEncClass = GstLidarEncoderClass;
 GType example_enc_get_type();
@@ -140,7 +146,7 @@ static GstLidarEncodeResult example_enc_encode(GstLidarEncoder* base,
                                                GByteArray* bytes, GstLidarCodedSlice* coded) {
   ExampleEnc* self = EXAMPLE_ENC(base);
   if (self->points->empty()) return GST_LIDAR_ENCODE_EMPTY;
-  // A little finer than the bound, for what floats round off.
+  // The step is slightly smaller than the error allows, because floats are rounded.
   const double bound = 0.999 * settings->max_error / kErrorPerStep;
   const Header header = {
       static_cast<guint32>(self->points->size()),
@@ -201,7 +207,7 @@ static void example_enc_class_init(ExampleEncClass* klass) {
 
 struct ExampleDec {
   GstLidarDecoder parent;
-  std::vector<GstLidarPoint>* points;  // of the slice decoded last
+  std::vector<GstLidarPoint>* points;  // the points of the last decoded slice
 };
 using ExampleDecClass = GstLidarDecoderClass;
 GType example_dec_get_type();
@@ -255,13 +261,14 @@ static void example_dec_class_init(ExampleDecClass* klass) {
   klass->write = example_dec_write;
 }
 
-gboolean example_coder_register(GstPlugin* plugin);  // not static: our tests call it, too
+// This function is not static, because tests of this project call it, too.
+gboolean example_coder_register(GstPlugin* plugin);
 gboolean example_coder_register(GstPlugin* plugin) {
   return gst_element_register(plugin, "exampleenc", GST_RANK_NONE, example_enc_get_type()) &&
          gst_element_register(plugin, "exampledec", GST_RANK_NONE, example_dec_get_type());
 }
 
-// lidarexample is the name of the library, too: libgstlidarexample.so.
+// The name of a plugin must match the file name of its library, which is libgstlidarexample.so.
 #define PACKAGE "lidarexample"
 GST_PLUGIN_DEFINE(GST_VERSION_MAJOR, GST_VERSION_MINOR, lidarexample, "A coder of clouds",
                   example_coder_register, "1.0", "LGPL", "lidarexample", "https://example.org")
