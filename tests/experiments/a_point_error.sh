@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Measures how far the grid of the paper (q bits over the cube) and the grid of ranges move points.
+# Measures how far points are moved by the grid of the paper, which has q bits over the cube, and by
+# the grid of ranges.
 set -euo pipefail
 . "$(dirname "$0")/common.sh" "$@"
 

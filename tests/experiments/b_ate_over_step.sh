@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Measures what compression costs SLAM: trajectory error against q and against the step.
+# Measures how the trajectory error of SLAM depends on the compression: on q for the paper's codec,
+# and on the step for ranges.
 set -euo pipefail
 . "$(dirname "$0")/common.sh" "$@"
 
@@ -17,7 +18,8 @@ measure() { # SOURCE GRID SETTING [options]
   shift 3
   name=$(basename "${source##*:}" .pcap)
   whole=$output/b.$name.tum
-  # The trajectory of the uncompressed scans is the truth if no better one is known.
+  # Writes the trajectory of the uncompressed scans to $whole. The other trajectories are compared
+  # with it, because the true trajectory of a capture is unknown.
   if [ "$grid" = none ]; then
     one=$(slam "$source" --scans $offline_scans --out "$whole")
   else
@@ -27,7 +29,8 @@ measure() { # SOURCE GRID SETTING [options]
   echo "$name,$grid,$setting,$(number .error.ate_rmse_m "$one"),$other,$(number .error.drift "$one"),$(jq -r '.degenerate / .scans' <<<"$one")"
 }
 for source in "${sources[@]}"; do
-  # A tunnel hides the motion: its errors come from the scene, not from compression.
+  # The tunnel is measured without compression only. SLAM cannot see the motion there, so the errors
+  # do not come from compression.
   measure "$source" none 0
   [[ $source != *:tunnel ]] || continue
   for step in $steps; do measure "$source" range "$step" --step "$step"; done

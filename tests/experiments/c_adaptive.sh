@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# A drive whose encoder adapts to a mobile network with L4S, as in the paper's system.
+# Measures a drive over a mobile network with L4S whose encoder adapts to the network, as in the
+# paper's system.
 set -euo pipefail
 . "$(dirname "$0")/common.sh" "$@"
 . "$here/network.sh"
 
-# The drive runs over the first link, and again over each further --trace.
+# Runs the drive over the first --trace, and again over each further --trace.
 names=(c)
 for trace in "${traces[@]:1}"; do names+=("c@$(basename "$trace" .txt)"); done
 printf '%s\n' "${names[@]}" | streams

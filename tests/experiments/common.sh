@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Sourced by the experiments: options, where things are, and how results are written.
+# To be sourced by the experiments. Parses the options, sets the paths, and defines functions that
+# write results.
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 root=$(cd "$here/../.." && pwd)
 letter=$(basename "$0")
@@ -55,21 +56,22 @@ done
 . "$root/pipelines/environment.sh"
 tools=$build/src/tools
 speed=12
-# The vehicle is slower in the bends of the town: it moves a tenth less there.
+# The vehicle drives slower in the bends of the town, so a drive there is a tenth shorter than the
+# length.
 seconds=$((length / speed + 1))
 scans=$((seconds * 10))
-offline_scans=$((scans < 4200 ? scans : 4200)) # five kilometres
+offline_scans=$((scans < 4200 ? scans : 4200)) # 4200 scans are five kilometres
 mkdir -p "$output"
 csv=$output/$letter.csv
 png=$output/$letter.png
 
-# verdict TEXT: prints and keeps the line that an experiment ends with.
+# verdict TEXT: prints the result of the experiment as a line, and writes it to a file.
 verdict() {
   echo "$letter: $*" | tee "$output/$letter.txt"
 }
-# slam SOURCE [options]: prints a JSON object on a line.
+# slam SOURCE [options]: runs SLAM over a source. Prints its results as a JSON object in one line.
 slam() { "$tools/lidar-eval" slam --json --speed $speed --seed "$seed" "$@" 2>/dev/null | jq -c .; }
-# plot: draws the picture $png by the gnuplot commands on standard input.
+# plot: reads gnuplot commands from standard input, and draws the picture $png.
 plot() {
   { echo "set terminal pngcairo size ${plot_width:-1000},${plot_height:-460} font 'sans,10'"
     echo "set output '$png'; set datafile separator ','; set grid; set key outside right top"

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# The drive of experiment c without adaptation: Draco at q = 16 as in the paper, and lidarenc at a
-# fixed step. A run of Draco that adapts separates the effects of codec and adaptation.
+# Measures the drive of experiment c without adaptation: with Draco at q = 16 as in the paper, and
+# with lidarenc at a fixed step. In a third run Draco adapts. This run separates the effect of the
+# codec from the effect of adaptation.
 set -euo pipefail
 . "$(dirname "$0")/common.sh" "$@"
 . "$here/network.sh"

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# The drive of experiment c without ECN: a FIFO of 100 ms that marks nothing.
+# Measures the drive of experiment c over a link without ECN. Its queue is a FIFO of 100 ms that
+# marks no packets.
 set -euo pipefail
 . "$(dirname "$0")/common.sh" "$@"
 . "$here/network.sh"

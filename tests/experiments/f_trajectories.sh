@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# The trajectories of c and d at the edge, coloured by step and by error.
+# Draws the trajectories that the edge computed in experiments c and d, coloured by step and by
+# error.
 set -euo pipefail
 . "$(dirname "$0")/common.sh" "$@"
 . "$here/network.sh"

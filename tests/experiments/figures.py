@@ -68,8 +68,9 @@ def lay_over(places, truth):
         [zx - xz, xy + yx, yy - xx - zz, yz + zy],
         [xy - yx, zx + xz, yz + zy, zz - xx - yy],
     ]
-    # The quaternion is the eigenvector of the largest eigenvalue. A shift makes that eigenvalue the
-    # largest in magnitude.
+    # The quaternion is the eigenvector that belongs to the largest eigenvalue. Power iteration
+    # finds the eigenvalue with the largest magnitude. A shift of all eigenvalues makes these two
+    # the same.
     shift = max(sum(abs(v) for v in row) for row in matrix)
     q = [1.0, 0.1, 0.1, 0.1]
     for _ in range(5000):
@@ -131,7 +132,8 @@ def way(folder):
     timeline = table(folder + "/timeline.csv")
     for t, place, true in zip(times, lay_over(places, true_places), true_places):
         i = min(max(int((t - offset) * 10), 0), len(timeline) - 1)
-        # A bin without a report has the step of the bin before it.
+        # A bin of the timeline without a report has a step of 0. The step of the previous bin is
+        # still valid there.
         while i > 0 and timeline[i]["step_m"] == 0:
             i -= 1
         print(f"{place[0]:.3f},{place[1]:.3f},{timeline[i]['step_m']},{math.dist(place, true):.4f}")

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# A size model that was trained in the tunnel, used in the street: encoded against target.
+# Compares encoded sizes with their targets in the street, for a size model that was trained in the
+# tunnel.
 set -euo pipefail
 . "$(dirname "$0")/common.sh" "$@"
 

@@ -1,13 +1,15 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Below r_min: what each degradation-preference does to the trajectory.
+# Measures the trajectory error for each degradation-preference at target bitrates above and below
+# r_min. This is the least bitrate that keeps the bound of the error.
 set -euo pipefail
 . "$(dirname "$0")/common.sh" "$@"
 
 source="lidartestsrc model=os0-32 scene=street speed=$speed seed=$seed num-buffers=$((8 * offline_scans)) trajectory-location=$output/h.truth.tum"
-# The automatic effort would follow how busy the machine is.
+# The effort is fixed, because the automatic effort depends on how busy the machine is.
 encoder="lidarenc max-error=0.05 intensity-bits=0 effort=2"
-# Measures the least bitrate for the bound: all slices at the coarsest step.
+# Measures r_min, the bitrate when all slices are encoded with the coarsest step that keeps the
+# bound.
 # shellcheck disable=SC2086
 gst-launch-1.0 -q ${source/num-buffers=$((8 * offline_scans))/num-buffers=400} ! $encoder ! filesink location="$output/h.bin"
 minimum=$(($(stat -c %s "$output/h.bin") * 8 / 5))

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Slices against whole scans: the age of the newest point at the edge, and its effect on the current
-# pose.
+# Compares slices with whole scans: the age of the newest point at the edge, and the error of the
+# current pose that follows from it.
 set -euo pipefail
 . "$(dirname "$0")/common.sh" "$@"
 . "$here/network.sh"

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Sourced by the experiments over a network: sender, link and receiver in real time, with SLAM.
+# To be sourced by the experiments that use a network. They run sender, link and receiver with SLAM
+# in real time.
 
-# path_of NAME: sets `path` to the options of the link: the --trace whose name follows an @ in NAME.
-# Without an @ it is the first --trace; without any --trace it is a generated drive.
+# path_of NAME: sets `path` to the options of the link. If NAME ends in @TRACE, the link uses the
+# --trace with that name. Otherwise it uses the first --trace, or a generated drive if there is no
+# --trace.
 path_of() {
   local trace
   path=(--drive --rate "$rate")
@@ -10,8 +12,8 @@ path_of() {
     [[ $1 == *@* && $1 != *@$(basename "$trace" .txt) ]] || { path=(--trace "$trace"); return; }
   done
 }
-# stream NAME RUN [options of the demo]: the report is in $output/NAME.RUN. Broken guarantees and
-# poor streams are results, not failures.
+# stream NAME RUN [options of the demo]: runs the demo, and writes its report to $output/NAME.RUN. A
+# run whose guarantees are broken or whose stream is poor is a result and not a failure.
 stream() {
   local name=$1 run=$2 folder=$output/$1.$2 path
   shift 2
@@ -22,8 +24,8 @@ stream() {
     "$@" >"$folder.log" 2>&1 || [ -f "$folder/summary.json" ] ||
     { tail -5 "$folder.log" >&2; return 1; }
 }
-# streams: runs each line of 'NAME [options of the demo]' of its input several times, --parallel of
-# them at a time.
+# streams: reads lines 'NAME [options of the demo]' from standard input, and runs each of them $runs
+# times. At most $parallel runs are active at a time.
 streams() {
   local lines run line pid pids=() failed=0
   mapfile -t lines
@@ -38,11 +40,11 @@ streams() {
   for pid in "${pids[@]}"; do wait "$pid" || failed=1; done
   return $failed
 }
-# Draco on x, y and z, q bits over the cube: the codec of the paper.
+# The codec of the paper: Draco on x, y and z, with q bits over the cube.
 paper_codec="--encoder dracoenc --geometry xyz"
 [ -f "$output/started" ] || touch "$output/started"
 
-# uncompressed RUN: prints the ATE of the same drive without codec and network.
+# uncompressed RUN: prints the ATE of the same drive when its scans are neither encoded nor sent.
 uncompressed() {
   local file=$output/uncompressed.$1.json
   [ -f "$file" ] && [ "$file" -nt "$output/started" ] ||
@@ -51,9 +53,9 @@ uncompressed() {
   jq -r .error.ate_rmse_m "$file"
 }
 
-# row NAME RUN: prints a line of the table of runs.
+# row NAME RUN: prints the results of a run as a line of the table. $row_header names its columns.
 row_header="name,run,scans,complete,oracle,skipped,slices_lost,rate_mbps,max_error_m,cloud_p95_ms,pose_p95_ms,ate_m,ate_uncompressed_m,now_rmse_m,now_p95_m,pauses,late_p95_ms,encode_p95_ms"
-# pauses FOLDER: prints how often the edge had no pose for half a second or more.
+# pauses FOLDER: prints how often the edge computed no pose for half a second or more.
 pauses() { awk -F, 'NR > 2 && $1 - last > 5 { ++n } { last = $1 } END { print n + 0 }' "$1/poses.csv"; }
 row() {
   jq -r --arg name "$1" --arg run "$2" --arg plain "$(uncompressed "$2")" \
@@ -62,14 +64,15 @@ row() {
     .max_error_m, .capture_to_cloud_ms.p95, .slam.capture_to_pose_ms.p95, (.slam.ate_rmse_m // ""),
     $plain, $now, $pauses, .stages_ms.capture.p95, .stages_ms.encode.p95] | join(",")' "$output/$1.$2/summary.json"
 }
-# rows NAME...: prints the rows of all their runs.
+# rows NAME...: prints the row of each run of each NAME.
 rows() {
   local name run
   for name in "$@"; do
     for run in $(seq "$runs"); do row "$name" "$run"; done
   done
 }
-# middle COLUMN FILE NAME: prints the median, and the least and most if there are several runs.
+# middle COLUMN FILE NAME: prints the median of a column over the runs of NAME. If there are several
+# runs, prints the least and the greatest value, too.
 middle() {
   awk -F, -v column="$1" -v name="$3" '
     NR == 1 { for (i = 1; i <= NF; ++i) if ($i == column) c = i; next }

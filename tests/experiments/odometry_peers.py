@@ -18,7 +18,7 @@ import subprocess
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-# Source, seed. All at 14 m/s, with seeds that nothing was tuned on.
+# The source and the seed of each drive. The speed is 14 m/s. No parameter was tuned on these seeds.
 DRIVES = [
     ("os0-32:street", 12), ("os0-32:town", 12), ("os0-32:field", 12),
     ("os1-64:street", 14), ("os1-64:town", 14), ("os1-64:field", 14),

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Makes every figure of docs/paper.md: each experiment has a table, a plot and a line of verdict.
+# Makes every figure of docs/paper.md. Each experiment writes a table, a plot and a line with its
+# result.
 set -uo pipefail
 . "$(dirname "$0")/common.sh" "$@"
 

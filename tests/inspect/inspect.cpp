@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Prints what users see of the plugins (elements, pads, properties) as JSON. The output is the same
-// on every machine.
+// Prints the elements, pads and properties of the plugins as JSON. The output is the same on every
+// machine.
 #include <gst/gst.h>
 
 #include <cstdio>
@@ -16,7 +16,7 @@ using lidar::gst::ElementPtr;
 using lidar::gst::StringPtr;
 using nlohmann::ordered_json;
 
-/// Returns the range of a GParamSpec; empty if the type has none.
+/// Returns the range of a property's values, or an empty value if its type has no range.
 ordered_json RangeOf(GParamSpec* spec) {
   if (G_IS_PARAM_SPEC_INT(spec))
     return {G_PARAM_SPEC_INT(spec)->minimum, G_PARAM_SPEC_INT(spec)->maximum};
@@ -31,7 +31,7 @@ ordered_json RangeOf(GParamSpec* spec) {
   return {};
 }
 
-/// Returns nick and description of each value of an enumeration or of flags.
+/// Returns the nick and the description of each value of a type of enumerations or flags.
 ordered_json ValuesOf(GType type) {
   ordered_json values = ordered_json::object();
   if (G_TYPE_IS_ENUM(type)) {
@@ -63,7 +63,8 @@ ordered_json DescribeProperty(GParamSpec* spec) {
   const ordered_json values = ValuesOf(spec->value_type);
   if (!values.empty()) property["values"] = values;
   if (G_IS_PARAM_SPEC_DOUBLE(spec)) {
-    // A serialised double would show digits of its binary value.
+    // The number itself is used here, because the text of a serialised double has all digits of its
+    // binary value.
     property["default"] = G_PARAM_SPEC_DOUBLE(spec)->default_value;
   } else if (!G_IS_PARAM_SPEC_BOXED(spec) && !G_IS_PARAM_SPEC_OBJECT(spec)) {
     const StringPtr text(gst_value_serialize(g_param_spec_get_default_value(spec)));
@@ -72,7 +73,8 @@ ordered_json DescribeProperty(GParamSpec* spec) {
   return property;
 }
 
-/// Leaves out properties of GStreamer's classes, which GStreamer documents.
+/// Describes the properties that the classes of this project add. GStreamer documents the
+/// properties of its own classes.
 ordered_json DescribeProperties(GstElement* element) {
   ordered_json properties = ordered_json::object();
   guint count = 0;
@@ -103,7 +105,7 @@ ordered_json DescribePads(GstElementFactory* factory) {
   return pads;
 }
 
-/// Describes the signals of our types, action signals included.
+/// Describes the signals of the classes of this project, including action signals.
 ordered_json DescribeSignals(GType type) {
   std::map<std::string, ordered_json> all;
   for (; g_str_has_prefix(g_type_name(type), "GstLidar"); type = g_type_parent(type)) {

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Compares the plugins with docs/plugins_cache.json, so that no pad or property changes by mistake.
+# Compares the plugins of this build with docs/plugins_cache.json, so that a change of a pad or a
+# property does not remain unnoticed.
 # Usage: inspect_test.sh PROGRAM [--update]
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
@@ -10,7 +11,7 @@ trap 'rm -f "$now" "$now.kept"' EXIT
 "$1" >"$now"
 
 if [ "${2:-}" = --update ]; then
-  # Plugins that this build leaves out keep their entries.
+  # The entries of plugins that are not part of this build are kept.
   [ -f "$snapshot" ] || echo '{}' >"$snapshot"
   jq -s '.[0] * {} | . + $new[0] | to_entries | sort_by(.key) | from_entries' \
     --slurpfile new "$now" "$snapshot" >"$now.kept"
@@ -19,8 +20,9 @@ if [ "${2:-}" = --update ]; then
   exit 0
 fi
 
-# A plugin that needs a missing library is not built here, and not compared. Newer versions of jq
-# print 1.0 as 1 only after a calculation, so 0 is added.
+# Compares only the plugins of this build. A plugin is not built if a library that it needs is
+# missing. Adds 0 to each number, because newer versions of jq print 1.0 as 1 only after a
+# calculation.
 numbers='def numbers_as_values: walk(if type == "number" then . + 0 else . end);'
 jq --slurpfile new "$now" "$numbers"' with_entries(select(.key as $k | $new[0] | has($k))) | numbers_as_values' \
   "$snapshot" >"$now.kept"

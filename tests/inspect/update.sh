@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Writes docs/plugins_cache.json anew from the plugins in build/ (or BUILD_DIR).
+# Writes docs/plugins_cache.json from the plugins in build/, or in the folder that BUILD_DIR names.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
 . "$root/pipelines/environment.sh"

@@ -8,7 +8,7 @@ import pathlib
 import re
 import sys
 
-# The table's names of libraries, and how their headers begin.
+# For each library in the table of dependencies: how the paths of its headers begin.
 LIBRARIES = {
     "liblzma": ("lzma",),
     "liblz4": ("lz4",),
@@ -44,7 +44,8 @@ LIBRARIES = {
     ),
     "threads": ("thread", "mutex", "shared_mutex", "condition_variable", "future"),
 }
-# Words of the table for several folders, and how their paths begin. Programs are not part of src.
+# Names that the table uses for several folders, and how the paths of these folders begin. Programs
+# are not part of src.
 GROUPS = {
     "all": "",
     "src": "src/",
@@ -53,7 +54,8 @@ GROUPS = {
 }
 SYSTEM = ("POSIX", "threads")  # GStreamer gives both to its elements
 FREE = ("emmintrin.h", "immintrin.h", "arm_neon.h", "wasm_simd128.h", "limits.h")
-# Calls that src/ must not make, and that no include would show. Programs are free of this rule.
+# Functions that src/ must not call. The check of includes does not find these calls. Programs may
+# call these functions.
 WORLD = re.compile(
     r"\b(steady_clock|system_clock|high_resolution_clock|random_device|getenv"
     r"|printf|fprintf|cout|cerr)\b"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Every relative link of the README and the docs leads to a file.
+# Checks that the file exists to which each relative link of the README and the docs points.
 set -uo pipefail
 cd "$1" || exit 1
 status=0

@@ -6,7 +6,7 @@ import pathlib
 import re
 import sys
 
-# Packages that tests need and the Debian packages do not.
+# Packages that only the tests need. The Debian packages do not depend on them.
 TESTS_ONLY = {
     "libbenchmark-dev",
     "libclang-rt-dev",

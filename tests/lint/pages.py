@@ -7,7 +7,7 @@ import re
 import sys
 
 KIND = re.compile(r"\*(Tutorial|How-to|Reference|Explanation)\b.*")
-# "Held by" means that a test fails if the table is wrong.
+# A table with "Held by" needs no commit, because a test fails if the table is wrong.
 HEAD = re.compile(r"\*(Commit [0-9a-f]{7,}, \d{4}-\d\d-\d\d|Held by )")
 FREE = ("index.md",)
 

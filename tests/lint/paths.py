@@ -65,7 +65,8 @@ class Checker:
         self.files = tree(root)
         self.names = {pathlib.PurePath(f).name for f in self.files}
         self.programs = programs(root, self.files)
-        # Names of properties and messages look like names of programs.
+        # The strings of the code. Names of properties and messages look like names of programs, but
+        # are not reported.
         self.strings = {
             s
             for f in self.files

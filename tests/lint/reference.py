@@ -17,7 +17,7 @@ HEAD = """# Elements, programs, scripts
 
 *Reference. `tests/lint/reference.py . --write` makes this page; edit the code that it reads.*
 """
-# Kinds of elements: how their classes begin, and the heading of each.
+# For each heading of the page: a pattern of the classes of its elements.
 KINDS = {
     "Sources": "Source/",
     "Coders and files of one scan": "Codec/(Encoder|Decoder|Parser)",

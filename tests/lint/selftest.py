@@ -132,7 +132,8 @@ auto* memory = g_aligned_alloc(1, 8, 8);
     "tests/core/test.cpp": '#include "ext/draco/draco.h"\n#include "src/tools/eval/main.h"\n',
 }
 
-# For each rule: a file, its new content, and what the rule must report.
+# For each rule: the path of a file, the new content of that file, and the problem that the rule
+# must report.
 PLANTED = {
     "dependencies": [
         ("src/base/a.h", '#include "src/cloud/cloud.h"', "src/base must not use src/cloud/cloud.h"),

@@ -39,7 +39,8 @@ def newer(girs, bound):
         if element.tag.endswith(("}namespace", "}repository")):
             own = ""  # the version of the file format
         since = version(own) if re.fullmatch(r"\d+\.\d+(\.\d+)?", own) else since
-        # An odd version is the development towards the next even one.
+        # An odd minor version is a development version. Its functions are first released in the
+        # next even version.
         if since and since[1] % 2:
             since = (since[0], since[1] + 1)
         if since and since > bound:
@@ -71,7 +72,8 @@ class Guards:
         elif self.stack:
             left, said = self.stack.pop()
             if word != "endif":
-                # If one of several terms does not hold, it is not known which.
+                # This branch is compiled if the earlier condition is false. If that condition has
+                # several terms, it is unknown which of them is false.
                 if len(said) == 1:
                     left.append((said[0][0], said[0][1], not said[0][2]))
                 self.stack.append((left, self.read(rest)))

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Lines of the README, the changelog and the docs are at most 100 characters wide. Tables, code
-# blocks and single words without a break (addresses) may be wider.
+# Checks that the lines of the README, the changelog and the docs have at most 100 characters.
+# Tables, code blocks, and single words without a space (such as addresses) may be longer.
 set -uo pipefail
 cd "$1" || exit 1
 mapfile -t pages < <(find . -name '*.md' -not -path './build*' -not -path './.git/*' -not -path '*/node_modules/*')

@@ -18,10 +18,10 @@ PREPOSITIONS = (
     "|Into|Of|On|Out|Over|Past|Since|Through|To|Toward|Under|Until|Upon|With|Within|Without"
 )
 BEGIN = re.compile(rf"(?:{PRONOUNS}|{PREPOSITIONS}) (?!\w*\(|- )(?!most|least)")
-# Code has no persons in it.
+# Words that describe code as a person.
 PERSONS = re.compile(r"//.*\b([Nn]obody|[Ww]hoever|[Ss]omebody|[Aa]nybody|[Ee]verybody|[Tt]ells|[Bb]eliev\w*)\b")
 LATER = ()
-# Constants whose names need the table beside them.
+# Names of constants that have no meaning without the code around them.
 VAGUE = re.compile(r"\bk(?:Back|Enough|Gone|Long|Longer|Soon|Sure)\b")
 def comments(text):
     """(line number, first line) of each comment: a block of lines counts once."""

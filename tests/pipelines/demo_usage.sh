@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Use of the demo: exit codes, messages that say what to do, and signals.
+# Tests the command line of the demo: its exit codes, its error messages, and its reaction to
+# signals.
 set -uo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 failed=0
 
-# expect CODE TEXT [options]: the demo ends with CODE and prints TEXT.
+# expect CODE TEXT [options]: expects that the demo ends with exit code CODE and prints TEXT.
 expect() {
   local code=$1 text=$2 output status
   shift 2
@@ -38,8 +39,8 @@ expect 0 "--duration" --help
 mkdir -p "$folder/out/packets2.csv/kept"  # so that the second link cannot write its packets
 expect 1 "packets2.csv" --links 2
 
-# The receiver has seen the end of the stream and still writes its clouds: a signal does not stop
-# it.
+# Sends a signal to a receiver that has received the end of the stream, but still writes its clouds.
+# The signal must not stop it.
 mkfifo "$folder/clouds"
 # shellcheck source=pipelines/environment.sh
 BUILD_DIR=$MESON_BUILD_ROOT source "$root/pipelines/environment.sh"

@@ -27,7 +27,8 @@ from ports import free_port  # noqa: E402
 PLAYING = b"Setting pipeline to PLAYING"  # what gst-launch-1.0 prints, except with -q
 ENDS = b"Got EOS from"  # what it prints before it ends by itself, except with -q
 QUIET_SECONDS, PLAY_SECONDS = 4, 1.5
-# While a pipeline stops, an element may refuse the first events of a stream: its source pad stops before its sink pad.
+# The error that an element may post while a pipeline stops. Its source pad is deactivated before
+# its sink pad, so it may fail to push the first events of a stream.
 REFUSED_EVENT = re.compile(rb"ERROR: from element \S+ Internal data stream error\.(?:\n.*){2}\n.*reason error \(-5\)")
 PATIENCE = 180  # seconds, on a busy machine
 AT_A_TIME = 4
@@ -56,7 +57,7 @@ def with_ports(command, ports):
             ports[match.group(2)] = free_port()
         return match.group(1) + str(ports[match.group(2)])
 
-    # foxglovesink listens at a fixed port by default.
+    # foxglovesink listens at the fixed port 8765 by default, so a port must be set.
     command = re.sub(r"\bfoxglovesink ?", "foxglovesink port=8765 ", command)
     return re.sub(r"(\b(?:\w+-)?port=)(\d+)", replace, command)
 
@@ -114,7 +115,8 @@ def run(command, folder, ports):
 def run_page(page, root, folder):
     """Returns lines about the page's commands, and how many ran and failed."""
     folder.mkdir()
-    # Pages name the committed captures from the project's folder; what commands write goes elsewhere.
+    # The pages use paths of committed captures relative to the project's folder. The commands run
+    # in another folder, because they write files.
     (folder / "tests").symlink_to(root / "tests")
     ports, said, ran, failed = {}, [], 0, 0
     for command in commands(page):

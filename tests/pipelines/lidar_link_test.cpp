@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// lidar-link as its users meet it: a process between two sockets.
+// Tests lidar-link as users run it: as a process that forwards packets from one socket to another.
 #include <gtest/gtest.h>
 #include <poll.h>
 
@@ -36,7 +36,8 @@ struct Got {
   Time at;
 };
 
-/// Returns what arrives until `count` datagrams are there, or none has come for `silence`.
+/// Returns the datagrams that arrive. Stops when there are `count` of them, or when none has
+/// arrived for `silence`.
 std::vector<Got> Receive(UdpSocket* socket, std::size_t count, Duration silence = 30s) {
   std::vector<Got> all;
   Time last = Now();
@@ -51,7 +52,7 @@ std::vector<Got> Receive(UdpSocket* socket, std::size_t count, Duration silence 
   return all;
 }
 
-/// A line of the log, of a packet that arrived at the link.
+/// A line of the log. It describes a packet that arrived at the link.
 struct Row {
   double at_ms = 0;
   double sojourn_ms = 0;
@@ -118,8 +119,8 @@ class LidarLink : public testing::Test {
     EXPECT_TRUE(socket->Send({payload.data(), payload.size()}, tos, nullptr));
   }
 
-  /// Returns what arrives until a marker behind all that was sent has, `copies` times. The link may
-  /// drop a marker, which another one replaces.
+  /// Sends a marker behind the packets that were sent, and returns all datagrams up to the arrival
+  /// of `copies` copies of the marker. If the link drops the marker, another marker is sent.
   std::vector<Got> ReceiveToTheEnd(UdpSocket* sender, int copies = 1) {
     std::vector<Got> all;
     for (int marker = 200; marker < 256; ++marker) {
@@ -148,7 +149,8 @@ class LidarLink : public testing::Test {
 TEST_F(LidarLink, CarriesPayloadEcnAndDscpThereAndTheAnswerBackAfterOneRtt) {
   Start({"--rate", "100", "--rtt", "40"});
   auto sender = Sender();
-  // A busy machine is late now and then, but not for all of half a minute.
+  // A busy machine may delay single packets, but not all packets of half a minute. So the least
+  // delay is checked.
   Duration best = 1h;
   const Time end = Now() + 30s;
   std::uint8_t i = 0;
@@ -174,7 +176,8 @@ TEST_F(LidarLink, CarriesPayloadEcnAndDscpThereAndTheAnswerBackAfterOneRtt) {
 }
 
 TEST_F(LidarLink, SerialisesABurstAtItsRateAndMarksWhatWaitsTooLong) {
-  // A packet of 972 + 28 bytes takes 10 ms at 0.8 Mbit/s, so a sender that is busy makes a burst.
+  // A packet has 972 + 28 bytes and takes 10 ms at 0.8 Mbit/s. Even a sender that is slow because
+  // the machine is busy sends faster than that, so a queue builds up.
   const std::string log = testing::TempDir() + "lidar_link_burst.csv";
   Start({"--rate", "0.8", "--rtt", "0", "--aqm", "step", "--aqm-high", "95", "--log", log});
   auto sender = Sender();
@@ -189,7 +192,9 @@ TEST_F(LidarLink, SerialisesABurstAtItsRateAndMarksWhatWaitsTooLong) {
   const auto summary = Stop();
   EXPECT_EQ(summary["marked"], marked);
   EXPECT_EQ(summary["ecn_out"]["ce"], marked);
-  // Each packet waits for those before it, however slowly the sender and the link run.
+  // A packet waits until the link has sent the packets before it. The expected waiting time is
+  // computed from the arrival times in the log, so a slow sender or link does not change the
+  // result.
   const auto rows = ReadLog(log);
   ASSERT_EQ(rows.size(), 50U);
   double free_ms = 0;
@@ -216,8 +221,8 @@ TEST_F(LidarLink, LeavesPacketsWithoutEcnUnmarkedAndDropsTheTail) {
 }
 
 TEST_F(LidarLink, MarksEct1AsSeldomAsEct0WhereItKnowsNoL4s) {
-  // The burst takes 160 ms. A classic packet is marked with the square of the probability, so less
-  // often.
+  // The link needs 160 ms for the burst. It marks a classic packet with the square of the
+  // probability that it uses for L4S, so it marks fewer classic packets.
   const auto marks = [this](std::vector<std::string> options) {
     options.insert(options.end(),
                    {"--rtt", "0", "--rate", "2", "--aqm", "pi2", "--aqm-target", "5"});

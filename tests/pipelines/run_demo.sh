@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# run_demo.sh FOLDER FILTER [options of the demo]: runs the demo from the build tree. Its guarantees
-# must hold (exit code 0, or 3 if little arrived, as on a busy machine), and the jq FILTER must be
-# true for its summary.json, with its stats.json as $stats[0].
+# run_demo.sh FOLDER FILTER [options of the demo]: runs the demo from the build tree, and fails if a
+# guarantee of the demo is broken. Exit code 3 is accepted beside 0, because little may arrive on a
+# busy machine. The jq FILTER must be true for summary.json. It can use stats.json as $stats[0].
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
 folder=$1

@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Scripts of pipelines/, and those that take hours, print help and refuse wrong options at once with
-# a reason. Nothing is streamed.
+# Tests the command lines of the scripts in pipelines/ and of the scripts that run for hours. Each
+# script prints help, and refuses a wrong option at once with a reason. Nothing is streamed.
 set -uo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
 failed=0
 
-# expect CODE TEXT SCRIPT [options]: the script ends with CODE and prints TEXT.
+# expect CODE TEXT SCRIPT [options]: expects that the script ends with exit code CODE and prints
+# TEXT.
 expect() {
   local code=$1 text=$2 script=$3 output status
   shift 3

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# pipelines/view.sh, pipelines/record.sh and pipelines/play.sh leave the files that their help promises.
+# Tests that pipelines/view.sh, pipelines/record.sh and pipelines/play.sh write the files that their
+# help describes.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
 folder=$(mktemp -d)
@@ -9,7 +10,7 @@ trap 'rm -rf "$folder"' EXIT
 passed=0
 failed=0
 
-# check NAME COMMAND...: counts whether the command succeeds.
+# check NAME COMMAND...: runs the command, and counts it as passed or failed.
 check() {
   local name=$1
   shift

@@ -24,7 +24,7 @@ SOURCES = {
 }
 build = ROOT / "build"
 LIDARS = ROOT / "tests/data/lidars"
-# These clouds have one row, and no sensor model.
+# Each of these clouds is a single row of points without a sensor model.
 CLOUDS = {"AT128": f"{LIDARS}/at128.pcd", "VLP-16": f"{LIDARS}/vlp16.pcd"}
 
 

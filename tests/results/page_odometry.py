@@ -4,7 +4,7 @@ import json
 
 import common
 
-# Model, scene, columns, speed [m/s], seed, scans.
+# The columns are: model, scene, columns, speed [m/s], seed, number of scans.
 DRIVES = [
     ("os0-32", "field", 512, 2, 0, 150),
     ("os0-32", "field", 512, 5, 0, 220),
@@ -16,7 +16,8 @@ DRIVES = [
 ]
 
 
-# Sensor, scene, columns, speed [m/s], seed, scans, options that leave out scans or beams.
+# The columns are: sensor, scene, columns, speed [m/s], seed, number of scans, options that leave
+# out scans or beams.
 CALIBRATED = [
     ("os0-32", "street", 512, 10, 50, 120, []),
     ("os0-32", "town", 512, 10, 50, 120, []),
@@ -34,7 +35,9 @@ CALIBRATED = [
     ("os1-64", "field", 512, 10, 50, 120, []),
 ]
 FAULTS = {"--every-beam": "half the beams", "--gap": "1 s gap", "--lost-scans": "10 % lost", "--every-scan": "2 Hz"}
-# Corners on hills, and open country, where the road bounces 2.5 times as much. Scene, speed [m/s], seed, roughness.
+# Drives over a rough road: around corners on hills in the town, and over open country, where the
+# road bounces 2.5 times as much at the same roughness. The columns are: scene, speed [m/s], seed,
+# roughness.
 BUMPY = [
     ("town", 12, 3, 4),
     ("town", 15, 4, 4),
@@ -48,7 +51,7 @@ STARTS = range(100, 140)  # seeds
 
 
 def slam(model, scene, columns, speed, seed, scans, *options):
-    # A synthetic drive has ten scans a second, of which `--every-scan` keeps some.
+    # A synthetic drive has ten scans per second. `--every-scan` keeps every n-th of them.
     return json.loads(
         common.lidar_eval(
             "slam", f"synth:{model}:{scene}:{columns}", "--json",
