@@ -76,7 +76,8 @@ def main():
     options = parser.parse_args()
     ends.Victim.program = options.victim
     sanitized = options.sanitizers != "none"
-    # Shadow memory of ThreadSanitizer: five to ten times the program's.
+    # The shadow memory of ThreadSanitizer needs five to ten times the memory of the program. The
+    # limits of memory are multiplied by this factor.
     memory_factor = 10 if "thread" in options.sanitizers else 3 if sanitized else 1
     rng = random.Random(options.seed)
     random.seed(options.seed)

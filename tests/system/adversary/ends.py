@@ -49,7 +49,8 @@ class Victim:
 
     def __init__(self, pipeline, **process):
         env = dict(os.environ)
-        # AddressSanitizer keeps freed memory, which would count as memory of the pipeline.
+        # AddressSanitizer keeps freed memory in a quarantine, and the measured memory of the
+        # pipeline includes it. So the quarantine is small.
         env["ASAN_OPTIONS"] = ":".join(filter(None, [env.get("ASAN_OPTIONS"), "quarantine_size_mb=8"]))
         self.process = subprocess.Popen([self.program, pipeline], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
                                         text=True, env=env, **process)

@@ -41,7 +41,9 @@ class SenderBench:
         while self.net()["feedback-accepted"] <= accepted + 5:
             assert time.monotonic() - start < MOST_PATIENCE, "honest feedback is not accepted any more"
             time.sleep(0.1)
-        # A busy machine sends less than before, and a source that sends little has a lower target.
+        # Waits until the target has recovered. The target of a source that sends little remains
+        # low, so it is also compared with the sent bitrate: on a busy machine the source sends less
+        # than before.
         start = time.monotonic()
         while (net := self.net())["target-bitrate"] < min(0.9 * self.target, 2 * net["sent-bitrate"]):
             assert time.monotonic() - start < MOST_PATIENCE, \
@@ -61,7 +63,8 @@ def forged_feedback(context):
     media = wire.parse_rtp(bench.receiver.packets[-1])
     lost = bench.net()["packets-lost"]
     sent, until, foreign = 0, time.monotonic() + context.seconds, 0
-    # The kernel drops reports of a sender that is busy, so the attack goes on until enough have arrived.
+    # The kernel drops reports when the sender is busy. So the attack continues until the sender has
+    # received enough of them.
     while time.monotonic() < until or foreign < 100:
         assert time.monotonic() < until + MOST_PATIENCE, f"{foreign:.0f} of {sent} reports were refused as foreign"
         last = wire.parse_rtp(bench.receiver.packets[-1]).sequence
@@ -130,7 +133,8 @@ def hostile_twcc(context):
     receiver = ends.TwccReceiver()
     bench = SenderBench(ends.TWCC_SENDER, receiver, rtcp_port=receiver.rtcp_to[1])
     rng = random.Random(context.random.random())
-    # The session grows its list by eight packets at a time: under AddressSanitizer a minute for 65,535.
+    # The RTP session extends its list by eight packets at a time. Under AddressSanitizer it would
+    # need a minute for a list of 65,535 packets, so the reports cover fewer packets then.
     most = 0x1FFF if context.sanitized else 0xFFFF
     sent, until = 0, time.monotonic() + context.seconds
     while time.monotonic() < until:

@@ -152,7 +152,8 @@ DEAR_CONFIG = wire.build_config(b"x:F32:0,y:F32:4,z:F32:8,range:U32:12", wire.se
 
 def dear_slice(n):
     """Returns a slice of dozens of bytes that claims as many pixels as it may."""
-    # An old version of the tables would be refused before it costs processor time.
+    # The payload has the current version of the tables, because a payload of an old version would
+    # be refused before it costs processor time.
     payload = bytes([table_version() << 4 | 3 | (n & 1) << 2]) + b"\xff" * (60 + n % 4)
     block = bytes([0x34, (n & 1) << 7]) + b"".join(map(varint, (DEAR_BEAMS, 0, DEAR_COLUMNS, 1, 256, len(payload))))
     return wire.Slice(block + payload, wire.config_id(DEAR_CONFIG), n, 0, 1, n)

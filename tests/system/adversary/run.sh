@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Builds the programs, and attacks them for the given time.
+# Builds the programs, and runs the attacks on them for the given time.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 

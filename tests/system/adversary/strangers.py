@@ -53,7 +53,8 @@ def forged_from_elsewhere(context):
     stranger = ends.udp_socket()
     other = context.other
     until, sent, foreign = time.monotonic() + context.seconds, 0, 0
-    # The kernel drops packets of a receiver that is busy, so the attack goes on until enough have arrived.
+    # The kernel drops packets when the receiver is busy. So the attack continues until the receiver
+    # has got enough of them.
     while time.monotonic() < until or foreign < 100:
         assert time.monotonic() < until + MOST_PATIENCE, f"{foreign:.0f} of {sent} packets were refused as foreign"
         stranger.sendto(wire.bye(bench.sender.ssrc), bench.sender.to)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Plays a pipeline that a test attacks or hinders, and answers each line of standard input with a
-// line of JSON about the pipeline.
+// Plays a pipeline that is the victim of a test. Reads commands from standard input, one per line.
+// Answers each of them with a line of JSON that describes the state of the pipeline.
 #include <gst/gst.h>
 #include <gst/net/net.h>
 #include <sys/resource.h>
@@ -27,9 +27,10 @@ namespace {
 
 using namespace lidar::gst;
 
-constexpr std::size_t kMaxRemembered = 100'000;  // slices between two reports
+// The largest number of slices whose checksums are kept between two reports.
+constexpr std::size_t kMaxRemembered = 100'000;
 
-/// Counts the buffers that pass a pad, and keeps the CRC-32 of each one until the next report.
+/// Counts the buffers that pass a pad. Keeps the CRC-32 of each buffer until the next report.
 class Tap {
  public:
   void Watch(GstElement* pipeline, const char* element, const char* pad_name) {
@@ -86,7 +87,7 @@ std::string Quoted(const std::string& text) {
   return quoted + "\"";
 }
 
-/// The numbers of the property `stats` of an element, as the members of an object.
+/// Returns the numbers in the property `stats` of an element, as the members of a JSON object.
 std::string Stats(GstElement* pipeline, const char* name) {
   const ElementPtr element(gst_bin_get_by_name(GST_BIN(pipeline), name));
   if (!element ||
@@ -110,7 +111,7 @@ std::string Stats(GstElement* pipeline, const char* name) {
   return "{" + members + "}";
 }
 
-/// A line of /proc/self/status [kB, or a count].
+/// Returns the value of a line of /proc/self/status. It is a size [kB] or a count.
 long Status(const std::string& name) {
   std::ifstream file("/proc/self/status");
   for (std::string line; std::getline(file, line);)
@@ -125,15 +126,16 @@ double CpuSeconds() {
          static_cast<double>(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec) / 1e6;
 }
 
-/// The application forks, as Python's subprocess does. Returns how the child ended, or -1 if it did
-/// not within 5 s. A child that becomes another program has as its exit code the number of sockets
-/// that it sees.
+/// Forks, as an application does that uses Python's subprocess. Returns the exit code of the child,
+/// or -1 if the child did not exit normally within 5 s. If `becomes_another` is true, the child
+/// executes another program, whose exit code is the number of network sockets that it inherited.
 int ForkAndWait(bool becomes_another) {
   std::fflush(stdout);
   const pid_t child = fork();
   if (child == 0) {
     if (!becomes_another) _exit(0);
-    // GStreamer's bus has a pair of sockets, too, which do not count.
+    // Counts only the sockets of UDP and TCP, because GStreamer's bus has a pair of local sockets,
+    // too.
     execl("/bin/sh", "sh", "-c",
           "exit $(ls -l /proc/self/fd | sed -n 's/.*socket:.\\([0-9]*\\).*/\\1/p' | while read -r "
           "i; do "
@@ -152,7 +154,7 @@ int ForkAndWait(bool becomes_another) {
   return -1;
 }
 
-/// A second stream for the sink `net`, which comes and goes while the first one plays.
+/// A second stream that is added to the sink `net` and removed again while the first stream plays.
 class Branch {
  public:
   explicit Branch(GstElement* pipeline)
@@ -167,7 +169,7 @@ class Branch {
     gst_pad_link(from.get(), pad_.get());
     gst_element_sync_state_with_parent(bin_);
   }
-  /// The pad is released while packets may be on their way.
+  /// Releases the pad while packets may still be on their way to it.
   ~Branch() {
     gst_element_set_locked_state(bin_, TRUE);
     const PadPtr from(gst_element_get_static_pad(bin_, "src"));
@@ -208,8 +210,8 @@ class Victim {
 
   bool exists() const { return pipeline_ != nullptr; }
 
-  /// Sets the state and returns how long that took [ms]. A state that is not reached within 10 s
-  /// may come later.
+  /// Sets the state, and returns how long the change took [ms]. Waits at most 10 s for the new
+  /// state.
   long SetState(GstState state) {
     const auto start = metronome_.elapsed();
     if (gst_element_set_state(pipeline_.get(), state) == GST_STATE_CHANGE_ASYNC)
@@ -248,7 +250,7 @@ class Victim {
   }
 
  private:
-  /// Returns the port at which this pipeline's clock is served.
+  /// Starts to serve the clock of this pipeline to other hosts. Returns the port.
   long ProvideClock() {
     const std::unique_ptr<GstClock, Unref> clock(
         gst_pipeline_get_clock(GST_PIPELINE(pipeline_.get())));
@@ -258,7 +260,8 @@ class Victim {
     return port;
   }
 
-  /// Plays by the clock at a port. Returns 1 if the pipeline then uses that clock.
+  /// Makes the pipeline use the clock that is served at `port` of this host. Returns 1 if the
+  /// pipeline uses that clock afterwards.
   long FollowClock(int port) {
     const std::unique_ptr<GstClock, Unref> clock(
         gst_net_client_clock_new("net", "127.0.0.1", port, 0));
@@ -276,7 +279,8 @@ class Victim {
       if (GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_WARNING) ++warnings_;
       if (GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_EOS) eos_ = true;
       if (GST_MESSAGE_TYPE(message.get()) != GST_MESSAGE_ERROR) continue;
-      // A source whose pad was removed during a stream may post an error that it is not linked.
+      // Ignores the messages of elements that were removed from the pipeline. A source whose pad
+      // was removed during a stream may post an error that the pad is not linked.
       if (!gst_object_has_as_ancestor(GST_MESSAGE_SRC(message.get()), GST_OBJECT(pipeline_.get())))
         continue;
       GError* error = nullptr;

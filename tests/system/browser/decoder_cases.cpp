@@ -46,7 +46,7 @@ void PutStream(const std::string& name, const std::optional<SensorModel>& model,
   Put(static_cast<std::uint32_t>(slices.size()));
   const codec::CloudLayout layout = test::OrganisedLayout();
   std::optional<codec::SliceDecoder> ranges;
-  // The model passes through its bytes, as at a receiver.
+  // The sensor model is serialised and parsed, as it is on the way to a receiver.
   if (model) {
     const Bytes sent = model->Serialise();
     ranges.emplace(codec::CloudFormat{layout, static_cast<std::uint32_t>(model->beams.size()),
@@ -76,7 +76,7 @@ void PutStream(const std::string& name, const std::optional<SensorModel>& model,
   }
 }
 
-/// Writes the stream again, with damage in every slice but the first.
+/// Writes the stream once more with damaged slices after the first slice, which stays intact.
 void PutDamaged(const std::string& name, const std::optional<SensorModel>& model,
                 const std::vector<Bytes>& slices, unsigned count) {
   std::mt19937 random(7);
@@ -112,7 +112,7 @@ std::vector<std::filesystem::path> FilesOf(const std::filesystem::path& folder) 
   return files;
 }
 
-/// The golden blocks are of GoldenSensor().
+/// Writes the golden blocks. They were encoded for the sensor that GoldenSensor() returns.
 void PutGolden(const std::filesystem::path& folder) {
   for (const auto& file : FilesOf(folder)) {
     const std::string name = file.stem();
@@ -130,7 +130,8 @@ void PutGolden(const std::filesystem::path& folder) {
   }
 }
 
-/// Writes scans of a room. Each has two slices, which refer to the previous scan.
+/// Writes three scans of a room. Each of their two slices refers to the same slice of the previous
+/// scan if the effort is above 0.
 void PutRoom(unsigned effort) {
   const SensorModel model = test::RoomSensor();
   codec::RangeEncoder encoder(model);
@@ -159,7 +160,8 @@ void PutClouds() {
   const codec::CloudLayout layout = test::OrganisedLayout();
   for (unsigned effort = 0; effort < 5; ++effort) {
     codec::cloud::ExactChoice exact;
-    // The page draws the points of such slices, and ignores their ranges and order.
+    // These slices contain ranges and the order of points, too. The page draws their points and
+    // ignores the rest.
     if (effort == 4) exact = {{*layout.fields.Find("range")}, true};
     auto encoder = codec::cloud::CloudEncoder::Create(layout, exact);
     encoder->set_effort(std::min(effort, 3U));
@@ -177,12 +179,13 @@ void PutClouds() {
   }
 }
 
-/// The sensor that the first byte of mixing_slice_fuzz.cpp chooses.
+/// Returns the sensor that mixing_slice_fuzz.cpp uses if the first byte of its input is `choice`.
 SensorModel CorpusSensor(unsigned choice) {
   return test::GoldenSensor((choice & 1) != 0 ? 16 : 4, (choice & 2) != 0 ? 96 : 32);
 }
 
-/// A payload of the mixing coder, after the header that its first byte chooses.
+/// Returns a block whose payload is the input without its first byte. The header of the block has
+/// the settings that mixing_slice_fuzz.cpp derives from the first byte.
 Bytes BlockOf(const Bytes& input) {
   const unsigned choice = input[0];
   const SensorModel model = CorpusSensor(choice);
@@ -205,7 +208,7 @@ void PutCorpora(const std::filesystem::path& folder) {
   std::vector<Bytes> clouds;
   for (const auto& file : FilesOf(folder / "cloud_slice")) clouds.push_back(ReadFile(file));
   PutStream("corpus of clouds", std::nullopt, clouds);
-  std::map<unsigned, std::vector<Bytes>> blocks;  // by sensor
+  std::map<unsigned, std::vector<Bytes>> blocks;  // the blocks of each sensor
   for (const auto& file : FilesOf(folder / "mixing_slice")) {
     const Bytes bytes = ReadFile(file);
     if (!bytes.empty()) blocks[bytes[0] & 3U].push_back(BlockOf(bytes));

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# The committed page is what its sources build.
+# Checks that the committed page is equal to a page that is built from its sources.
 set -euo pipefail
 page=$(cd "$(dirname "$0")/../../../ext/web/page" && pwd)
 [ -d "$page/node_modules" ] || { echo "run npm ci in ext/web/page first"; exit 77; }

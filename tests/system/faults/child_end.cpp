@@ -20,7 +20,8 @@ ChildEnd::ChildEnd(const char* role, std::uint16_t port, const std::string& opti
       nullptr, program, role, std::to_string(port).c_str(), options.c_str(), nullptr);
   if (process_ == nullptr) throw std::runtime_error("fault-end cannot be started");
   answers_ = g_data_input_stream_new(g_subprocess_get_stdout_pipe(process_));
-  Report();  // it answers once it plays
+  // Waits until the end plays, because only then does it answer.
+  Report();
 }
 
 ChildEnd::~ChildEnd() {
@@ -70,7 +71,8 @@ milliseconds ChildEnd::CpuTime() const {
   const std::string stat = Proc("stat");
   std::istringstream words(stat.substr(stat.rfind(')') + 2));
   std::string skipped;
-  for (int i = 0; i < 11; ++i) words >> skipped;  // then utime and stime follow
+  // The fields after these are utime and stime.
+  for (int i = 0; i < 11; ++i) words >> skipped;
   long user = 0, system = 0;
   words >> user >> system;
   return milliseconds((user + system) * 1'000 / sysconf(_SC_CLK_TCK));
@@ -80,7 +82,8 @@ std::uint64_t ChildEnd::PeakMemory() const {
   const std::string status = Proc("status");
   const auto at = status.find("VmHWM:");
   return at == std::string::npos ? UINT64_MAX
-                                 : std::stoull(status.substr(at + 6)) * 1'024;  // the file has kB
+                                 // The value in the file is in kB.
+                                 : std::stoull(status.substr(at + 6)) * 1'024;
 }
 
 }  // namespace lidar::test

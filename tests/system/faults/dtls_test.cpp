@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The stock DTLS-SRTP elements around screamtx and screamrx, as in pipelines/secure-dtls.sh.
+// Tests GStreamer's own elements for DTLS-SRTP around screamtx and screamrx, as
+// pipelines/secure-dtls.sh uses them.
 #include <gtest/gtest.h>
 
 #include "tests/support/patience.h"
@@ -9,7 +10,8 @@
 namespace lidar::test {
 namespace {
 
-/// Each end makes a certificate for itself, and does not check that of the other.
+/// A sender and a receiver that are connected by DTLS-SRTP. Each of them makes its own certificate,
+/// and accepts any certificate of its peer.
 struct DtlsPath {
   DtlsPath()
       : port(FreePort()),
@@ -55,9 +57,11 @@ TEST(Dtls, ShowsTheMarksOfTheNetworkToTheCongestionControl) {
   path.link.Set({});
   EXPECT_TRUE(Eventually([&] { return shown() > 200; }));
   EXPECT_TRUE(Eventually([&] { return path.sender.Stat("tx", "feedback-accepted") > 100; }));
-  // The reports come back encrypted, and contain every mark.
+  // The receiver's reports are encrypted, too. The sender decrypts them, so it counts each mark
+  // that the receiver counted.
   EXPECT_TRUE(Eventually([&] { return path.sender.Stat("tx", "packets-ce") == marked(); }));
-  // The link sees packets, but cannot see slices in them. No slice is missing.
+  // The packets are encrypted, so the link recognises slices in them only by chance. No slice is
+  // damaged.
   EXPECT_LT(path.link.counts().slices, 3U);
   EXPECT_EQ(path.receiver.Stat("depay", "slices-damaged"), 0U);
   EXPECT_EQ(path.sender.Error() + path.receiver.Error(), "");

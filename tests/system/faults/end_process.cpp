@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// One end of a stream as a process of its own, with commands on its standard input.
+// Runs one end of a stream as a process. Reads commands from standard input.
 #include <glib.h>
 
 #include <cinttypes>
@@ -28,8 +28,9 @@ struct End {
   }
   Pipeline& pipeline() { return sender ? sender->pipeline() : receiver->pipeline(); }
 
-  /// Prints slices sent, received, lost, damaged or mismatching, clouds, reports accepted,
-  /// datagrams that the kernel dropped, and the clock.
+  /// Prints a line of numbers: slices sent, slices received, slices lost, slices damaged or
+  /// mismatching, clouds, accepted feedback reports, datagrams that the kernel dropped, and the
+  /// wall clock [us].
   void Report() {
     const Accounts a = receiver ? receiver->accounts() : Accounts();
     std::printf("%" PRIu64 " %" PRIu64 " %" PRIu64 " %" PRIu64 " %" PRIu64 " %" PRIu64 " %" PRIu64

@@ -15,9 +15,10 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr std::size_t kRemembered = 20'000;  // slices of four minutes
+// The number of slices whose hashes are kept. A sender needs four minutes for as many slices.
+constexpr std::size_t kRemembered = 20'000;
 
-/// Calls `call(buffer)` for each buffer of the pad.
+/// Calls `call(buffer)` for each buffer that passes the pad.
 template <class Call>
 void Watch(GstElement* element, const char* pad_name, Call* call) {
   const gst::PadPtr pad(gst_element_get_static_pad(element, pad_name));

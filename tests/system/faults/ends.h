@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The two ends of a stream as pipelines. They keep what was sent and shown for comparison.
+// The two ends of a stream as pipelines. They compare the slices that the receiver gets with the
+// slices that were sent.
 #pragma once
 #include <gst/gst.h>
 
@@ -16,7 +17,7 @@
 
 namespace lidar::test {
 
-/// Hashes of the last slices that all senders of a test sent.
+/// The hashes of the slices that all senders of a test have sent most recently.
 class SentSlices {
  public:
   void Add(std::uint32_t hash);
@@ -30,7 +31,7 @@ class SentSlices {
 
 std::uint32_t Hash(GstBuffer* buffer);
 
-/// A pipeline that is stopped when it is destroyed.
+/// A pipeline. The destructor stops it.
 class Pipeline {
  public:
   explicit Pipeline(const std::string& description);
@@ -39,14 +40,15 @@ class Pipeline {
   Pipeline& operator=(const Pipeline&) = delete;
 
   void SetState(GstState state);
-  /// Sends EOS and waits for its message. Returns false if that takes longer than `limit`.
+  /// Sends EOS, and waits until EOS has reached all sinks. Returns false if that takes longer than
+  /// `limit`.
   bool Finish(std::chrono::milliseconds limit);
   bool AwaitEnd(std::chrono::milliseconds limit);
-  /// Returns a number of the property `stats` of an element; all bits are set if it lacks the
-  /// number.
+  /// Returns the number `name` of the property `stats` of an element. Returns a number with all
+  /// bits set if there is no such number.
   std::uint64_t Stat(const char* element, const char* name) const;
   gst::ElementPtr Child(const char* name) const;
-  /// The first error on the bus, or empty.
+  /// Returns the text of the first error on the bus, or an empty text if there is no error.
   std::string Error() const;
   unsigned Messages(GstMessageType type) const;
   GstElement* get() const { return pipeline_.get(); }
@@ -55,13 +57,14 @@ class Pipeline {
   gst::ElementPtr pipeline_;
 };
 
-/// lidartestsrc ! dracoenc ! rtplidarpay ! screamsink
+/// A sender with the pipeline: lidartestsrc ! dracoenc ! rtplidarpay ! screamsink
 class SendingEnd {
  public:
   SendingEnd(SentSlices* sent, std::uint16_t port, const std::string& sink_options = "");
   Pipeline& pipeline() { return pipeline_; }
   std::uint64_t slices_sent() const { return pipeline_.Stat("pay", "slices-sent"); }
-  /// Returns the largest number of slices that the sensor can have captured: 80 a second.
+  /// Returns how many slices the sensor can have captured at most since this object was made. It
+  /// captures 80 slices per second.
   std::uint64_t slices_captured() const {
     const std::chrono::duration<double> time = std::chrono::steady_clock::now() - made_;
     return static_cast<std::uint64_t>(80 * time.count()) + 1;
@@ -79,17 +82,19 @@ struct Accounts {
   std::uint64_t slices() const { return received + lost + damaged + mismatch; }
 };
 
-/// screamsrc ! rtplidardepay ! dracodec ! fakesink
+/// A receiver with the pipeline: screamsrc ! rtplidardepay ! dracodec ! fakesink
 class ReceivingEnd {
  public:
-  /// Counts no slice as foreign if `sent` is null.
+  /// If `sent` is null, slices are not compared with sent slices, and foreign() remains 0.
   ReceivingEnd(const SentSlices* sent, std::uint16_t port, const std::string& source_options = "");
   Pipeline& pipeline() { return pipeline_; }
   Accounts accounts() const;
-  /// Decoded clouds so far, and slices that no sender sent.
+  /// clouds() returns the number of decoded clouds. foreign() returns the number of received slices
+  /// that no sender has sent.
   std::uint64_t clouds() const { return clouds_; }
   std::uint64_t foreign() const { return foreign_; }
-  /// Time until the next cloud; max() if that takes longer than `limit`.
+  /// Waits for the next cloud, and returns how long that took. Returns max() if it took longer than
+  /// `limit`.
   std::chrono::milliseconds NextCloud(std::chrono::milliseconds limit) const;
 
  private:
@@ -99,10 +104,11 @@ class ReceivingEnd {
   Pipeline pipeline_;
 };
 
-/// Memory that this process has allocated [bytes]. The resident memory grows for hours, too, as
-/// each arena of malloc() keeps what was freed.
+/// Returns the memory that this process has allocated and not freed [bytes]. The resident memory
+/// would not show a leak, because it grows for hours without one: each arena of malloc() keeps
+/// freed memory.
 std::uint64_t AllocatedBytes();
-/// CPU time of this process.
+/// Returns the CPU time that this process has used.
 std::chrono::milliseconds CpuTime();
 
 }  // namespace lidar::test

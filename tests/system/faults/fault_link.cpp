@@ -19,7 +19,8 @@ namespace {
 constexpr std::size_t kRtpHeader = 12;
 constexpr std::size_t kIpAndUdp = 28;
 constexpr std::size_t kMaxSlices = 10'000;
-constexpr std::uint32_t kOpenScans = 8;  // scans whose slices may still get packets
+// The number of newest scans whose slices may still get packets.
+constexpr std::uint32_t kOpenScans = 8;
 
 sockaddr_in Loopback(std::uint16_t port) {
   sockaddr_in a{};
@@ -44,7 +45,7 @@ int Open(std::uint16_t* port) {
 }
 
 bool IsMedia(const std::vector<std::uint8_t>& bytes) {
-  // RTCP has packet types 192 to 223 in its second byte (RFC 5761).
+  // The second byte of an RTCP packet is a packet type from 192 to 223 (RFC 5761).
   return bytes.size() > kRtpHeader && (bytes[1] < 192 || bytes[1] > 223);
 }
 
@@ -140,7 +141,7 @@ void FaultLink::Note(const Datagram& datagram, bool hit) {
   }
 }
 
-/// Counts and drops the slices that get no more packets.
+/// Counts the slices that will get no more packets, and removes them from `slices_`.
 void FaultLink::Fold(const SliceKey& newest) {
   for (auto it = slices_.begin(); it != slices_.end();) {
     const bool open =
@@ -155,9 +156,10 @@ void FaultLink::Fold(const SliceKey& newest) {
   }
 }
 
-/// Returns true if all packets of the slice passed: a sender may give up a slice that is half sent.
+/// Returns true if all packets of the slice passed. It is not sufficient that the link dropped none
+/// of them, because a sender may send only a part of a slice and give up the rest.
 bool FaultLink::Seen::IsWhole() const {
-  // Sequence numbers that wrap within a slice give two runs instead of one.
+  // If the sequence numbers wrap within a slice, the span is nearly the whole range of numbers.
   const std::size_t span = std::size_t{*sequences.rbegin()} - *sequences.begin() + 1;
   return starts && ends && !hit && (span == sequences.size() || span > 60'000);
 }
@@ -190,7 +192,7 @@ void FaultLink::Forward(const Datagram& datagram) {
   Send(datagram);
 }
 
-/// Sends what has come through the bottleneck.
+/// Sends the packets that have passed the bottleneck.
 void FaultLink::Deliver() {
   std::vector<Datagram> through;
   {
@@ -206,7 +208,7 @@ void FaultLink::Deliver() {
   for (const Datagram& datagram : through) Send(datagram);
 }
 
-/// Returns how long the thread may wait for incoming packets.
+/// Returns how long the thread may wait for incoming packets [ms].
 int FaultLink::WaitMs() const {
   constexpr int kLongestMs = 20;
   std::lock_guard lock(mutex_);

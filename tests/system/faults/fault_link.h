@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A UDP relay that damages what it carries on request, and notes for each slice whether all of it
-// passed.
+// A UDP relay that damages or drops packets on request. For each slice it records whether all
+// packets of the slice passed.
 #pragma once
 #include <netinet/in.h>
 
@@ -23,21 +23,21 @@
 
 namespace lidar::test {
 
-/// The faults of the link.
+/// The faults of the link. A fraction is from 0 to 1.
 struct Fault {
-  double loss = 0;             // part of the media packets
-  double duplicate = 0;        // part of the media packets
-  double feedback_loss = 0;    // part of the packets back
-  unsigned reorder_by = 0;     // every 50th packet comes this many packets late
+  double loss = 0;             // fraction of media packets that are dropped
+  double duplicate = 0;        // fraction of media packets that are sent twice
+  double feedback_loss = 0;    // fraction of feedback packets that are dropped
+  unsigned reorder_by = 0;     // every 50th packet is sent this many packets later
   std::size_t mtu = 65'535;    // larger datagrams are dropped [bytes of UDP payload]
-  double damage = 0;           // part of the media packets that get a wrong bit
-  unsigned garbage_ratio = 0;  // packets of garbage for each media packet
-  bool valid_garbage = false;  // garbage that looks like RTP of our payload type
-  double mark = 0;             // part of the media packets that get CE, where they have ECT
-  bool down = false;           // nothing passes either way
+  double damage = 0;           // fraction of media packets in which a bit is changed
+  unsigned garbage_ratio = 0;  // number of garbage packets per media packet
+  bool valid_garbage = false;  // whether garbage looks like RTP with the payload type of media
+  double mark = 0;             // fraction of media packets with ECT that are marked CE
+  bool down = false;           // whether all packets are dropped, in both directions
 };
 
-/// A slice: the SSRC of its sender, its scan number and its index.
+/// The key of a slice: the SSRC of its sender, its scan number and its index.
 struct SliceKey {
   std::uint32_t ssrc;
   std::uint32_t scan_number;
@@ -48,15 +48,16 @@ struct SliceKey {
 };
 
 struct LinkCounts {
-  std::uint64_t packets = 0;  // of media
+  std::uint64_t packets = 0;  // media packets
   std::uint64_t dropped = 0;
   std::uint64_t garbage = 0;
   std::uint64_t slices = 0;
-  std::uint64_t slices_whole = 0;  // passed unchanged
+  std::uint64_t slices_whole = 0;  // slices whose packets all passed unchanged
 };
 
-/// Relays 127.0.0.1:port() to 127.0.0.1:`receiver_port`, ECN bits included, and feedback back to
-/// the address that sent last. Has its own thread.
+/// Relays media packets from 127.0.0.1:port() to 127.0.0.1:`receiver_port`, including their ECN
+/// bits. Relays feedback packets to the address that sent the last media packet. Runs in a thread
+/// of its own.
 class FaultLink {
  public:
   explicit FaultLink(std::uint16_t receiver_port, unsigned seed = 1);
@@ -66,12 +67,13 @@ class FaultLink {
 
   std::uint16_t port() const { return port_; }
   void Set(const Fault& fault);
-  /// Puts a queue and a link of this capacity (see link::Capacity::ParseTrace) into the path of
-  /// media: it marks, and never drops for lack of room. The trace begins now; its last rate stays.
+  /// Puts a bottleneck with a queue into the path of media. Its capacity follows the trace (see
+  /// link::Capacity::ParseTrace), which begins now. After the end of the trace its last rate
+  /// remains. The queue marks packets, and has no limit at which it drops them.
   void SetCapacity(const std::string& trace);
-  /// Media goes on from another source port, as after NAT rebinding.
+  /// Sends media from another source port from now on, as happens after NAT rebinding.
   void Rebind();
-  /// Media goes on to another port of 127.0.0.1, as after a change of routes.
+  /// Sends media to another port of 127.0.0.1 from now on, as happens after a change of routes.
   void MoveReceiver(std::uint16_t port) { receiver_port_ = port; }
   LinkCounts counts() const;
 
@@ -105,17 +107,19 @@ class FaultLink {
   std::map<SliceKey, Seen> slices_;
   LinkCounts counts_;
   bool rebind_ = false;
-  std::unique_ptr<link::Bottleneck> bottleneck_;  // null: no limit
+  std::unique_ptr<link::Bottleneck> bottleneck_;  // null if the capacity is unlimited
 
-  // State of the thread.
-  std::map<std::uint64_t, Datagram> queued_;  // by the bottleneck's id
+  // The members below belong to the thread of the link. Other threads access only the atomic
+  // members, and read port_, which does not change.
+  std::map<std::uint64_t, Datagram> queued_;  // by the id of the packet in the bottleneck
   std::uint64_t next_id_ = 0;
   std::atomic<std::uint16_t> receiver_port_;
   std::uint16_t port_ = 0;
   int in_ = -1;
   int out_ = -1;
   std::uint16_t sender_port_ = 0;
-  std::optional<std::pair<Datagram, unsigned>> held_;  // and the packets until it is sent
+  // A packet that is sent later, and the number of packets to send before it.
+  std::optional<std::pair<Datagram, unsigned>> held_;
   unsigned until_hold_ = 50;
   std::mt19937 random_;
   std::atomic<bool> stop_{false};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Everything that can go wrong between and around the two ends, and what a user then sees.
+// Tests faults of the link and of both ends, and what a user sees of them.
 #include <gtest/gtest.h>
 
 #include <sys/wait.h>
@@ -137,7 +137,8 @@ TEST_F(Faults, AnotherAddressOfTheSenderIsFollowed) {
   EXPECT_GT(sender_->pipeline().Stat("net", "feedback-accepted"), before);
   EXPECT_TRUE(sender_->pipeline().Finish(seconds(10)));
   std::this_thread::sleep_for(milliseconds(300));
-  // Slices that came from the new address before it was trusted count as missing, once.
+  // The receiver drops packets from the new address until it trusts the address. The slices in
+  // these packets count as missing once.
   EXPECT_EQ(receiver_->accounts().slices(), sender_->slices_sent());
   EXPECT_EQ(receiver_->clouds(), receiver_->accounts().received);
   EXPECT_EQ(receiver_->foreign(), 0U);
@@ -145,7 +146,8 @@ TEST_F(Faults, AnotherAddressOfTheSenderIsFollowed) {
 
 TEST_F(Faults, AReceiverThatMovesIsReachedAtItsNewAddress) {
   StartReceiver();
-  sender_.emplace(&sent_, port_);  // no link between them
+  // The sender sends directly to the receiver, without a link between them.
+  sender_.emplace(&sent_, port_);
   sender_->pipeline().SetState(GST_STATE_PLAYING);
   ASSERT_NE(receiver_->NextCloud(seconds(10)), milliseconds::max());
   receiver_.reset();
@@ -210,7 +212,8 @@ TEST_F(Faults, AStarvedSenderRecovers) {
   ExpectBooksAgree(false);
 }
 
-/// Takes the pipeline from NULL to PLAYING and back a thousand times.
+/// Changes the pipeline from NULL to PLAYING and back a thousand times. Expects that this does not
+/// increase the allocated memory.
 void ExpectCyclesToLeaveNothing(Pipeline& pipeline) {
   std::uint64_t base = 0;
   for (int i = 0; i < 1'000; ++i) {

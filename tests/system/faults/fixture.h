@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Two ends, and a link with faults between them.
+// A test fixture with two ends and a link with faults between them.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ class Faults : public ::testing::Test {
     receiver_.emplace(&sent_, port_, options_);
     receiver_->pipeline().SetState(GST_STATE_PLAYING);
   }
-  /// Both ends play, and clouds come.
+  /// Starts both ends, and waits until clouds arrive.
   void Start() {
     StartReceiver();
     StartSender();
@@ -40,17 +40,19 @@ class Faults : public ::testing::Test {
     std::this_thread::sleep_for(length);
     link_.Set({});
   }
-  /// Expects a cloud within `limit`, and prints the time that it took.
+  /// Expects a cloud within `limit`, and prints the time until it arrived.
   void ExpectRecovery(const char* what, milliseconds limit) {
     const auto time = receiver_->NextCloud(limit);
     EXPECT_LE(time, limit) << what;
     std::printf("recovery: %-44s %5lld ms\n", what, static_cast<long long>(time.count()));
   }
-  /// Ends the sender with EOS, and compares the counts of both sides. The depayloader counts each
-  /// slice that the payloader sent once, as received or missing. Received are the slices that the
-  /// link let through. A slice names those of the 64 slices before it that the sender left out. If
-  /// the sender may have left out more while nothing came through, these count as lost, and
-  /// `sends_all` is false.
+  /// Ends the sender with EOS, and compares the counts of both ends. The receiver must have got
+  /// exactly the slices that passed the link. Together with the missing slices these are all slices
+  /// that the payloader sent.
+  ///
+  /// The sender may leave out slices. A slice lists those of the 64 slices before it that were left
+  /// out. If more slices may have been left out while no packet passed, the receiver counts them as
+  /// lost. `sends_all` must be false in this case.
   void ExpectBooksAgree(bool sends_all = true) {
     std::this_thread::sleep_for(milliseconds(500));
     EXPECT_TRUE(sender_->pipeline().Finish(seconds(10)));
@@ -72,7 +74,7 @@ class Faults : public ::testing::Test {
     EXPECT_EQ(sender_->pipeline().Error() + receiver_->pipeline().Error(), "");
   }
 
-  std::string options_;  // of screamsink and screamsrc
+  std::string options_;  // properties of screamsink and screamsrc
   std::uint16_t port_;
   SentSlices sent_;
   FaultLink link_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Elements in real time over links with gaps: short versions of the traces that the simulation runs
-// for hours.
+// Tests the elements in real time over links with gaps. The traces are short versions of those that
+// the simulation uses for hours.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ std::string Gaps(milliseconds gap, milliseconds every) {
 struct GapCase {
   const char* name;
   std::string trace;
-  double complete;  // least part of the scans that is complete
+  double complete;  // least fraction of the scans that must be complete
   bool srtp = false;
 };
 void PrintTo(const GapCase& c, std::ostream* out) { *out << c.name; }
@@ -38,14 +38,15 @@ TEST_P(Gap, CostsWhatItTookAndTheStreamIsBackAtOnce) {
   if (GetParam().srtp) options_ = "srtp-key=" + std::string(60, '5');
   Start();
   const std::uint64_t before = receiver_->accounts().complete;
-  link_.SetCapacity(GetParam().trace + "13 6\n");  // the trace may end in a gap
+  // The trace may end in a gap, so capacity is added after it.
+  link_.SetCapacity(GetParam().trace + "13 6\n");
   std::this_thread::sleep_for(kWithGaps);
   ExpectRecovery(GetParam().name, seconds(1));
   const auto complete = static_cast<double>(receiver_->accounts().complete - before);
   EXPECT_GE(complete, GetParam().complete * kScansPerSecond * kWithGaps.count());
   std::printf("  %.0f of %d scans complete\n", complete,
               static_cast<int>(kScansPerSecond * kWithGaps.count()));
-  // The link cannot see slices in encrypted packets.
+  // The link cannot find slices in encrypted packets, so it has no counts to compare with.
   if (!GetParam().srtp) ExpectBooksAgree();
   EXPECT_EQ(receiver_->foreign(), 0U);
   EXPECT_EQ(sender_->pipeline().Error() + receiver_->pipeline().Error(), "");
@@ -69,7 +70,7 @@ TEST_F(Faults, ALinkOfZeroCapacityIsWaitedFor) {
   ExpectBooksAgree();
 }
 
-/// A LiDAR and a camera through one screamsink.
+/// Streams of a LiDAR and of a camera that share a screamsink.
 struct TwoStreams {
   TwoStreams()
       : receiver("screamsrc name=net port=" + std::to_string(port) +
@@ -110,7 +111,8 @@ TEST(GapFaults, ACameraThatStopsInAGapLeavesTheLidarItsShareAndComesBack) {
   std::this_thread::sleep_for(seconds(3));
   EXPECT_GT(streams.frames(), 10U);
   streams.link.SetCapacity(Gaps(milliseconds(300), seconds(2)));
-  std::this_thread::sleep_for(milliseconds(1'900));  // within the first gap
+  // After this time the link is within the first gap.
+  std::this_thread::sleep_for(milliseconds(1'900));
   const auto camera = streams.sender.Child("camera");
   gst_element_set_state(camera.get(), GST_STATE_PAUSED);
   const std::uint64_t scans = streams.scans();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Faults of the machine at one end, which therefore is a process of its own.
+// Tests faults of the machine at one end. This end runs in a process of its own, so that the fault
+// does not affect the test.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -15,7 +16,7 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-/// Expects that the receiver and the link saw every slice that was sent.
+/// Expects that every slice that was sent passed the link and was received.
 void ExpectNothingLost(ChildEnd* sender, ChildEnd* receiver, const FaultLink& link) {
   std::this_thread::sleep_for(milliseconds(500));
   const ChildReport s = sender->Finish();
@@ -42,7 +43,7 @@ TEST_P(ClockStep, OfAnHourCostsNothing) {
   ChildEnd& end = std::string(GetParam().side) == "receiver" ? receiver : sender;
   const std::int64_t before = end.Report().wall_clock;
   end.StepClock(GetParam().seconds);
-  // The clock was indeed stepped.
+  // Checks that the step has changed the clock of the end.
   EXPECT_NEAR(static_cast<double>(end.Report().wall_clock - before), 1e6 * GetParam().seconds, 1e6);
   const auto time = receiver.NextCloud(seconds(3));
   EXPECT_LT(time, milliseconds(500));
@@ -89,7 +90,8 @@ struct Flood {
   bool is_rtp;
   bool srtp;
 };
-/// Floods the receiver for ten seconds, and checks its CPU time and memory meanwhile.
+/// Floods the receiver with garbage for ten seconds, and checks how much CPU time and memory it
+/// uses.
 void Suffer(FaultLink* link, ChildEnd* receiver, const Flood& flood) {
   Fault fault;
   fault.garbage_ratio = 100;
@@ -131,7 +133,8 @@ TEST_P(Garbage, AtAHundredTimesTheRateCostsLessThanACoreAndHidesNothing) {
               static_cast<unsigned long long>(sender.slices_sent()),
               static_cast<unsigned long long>(r.received),
               static_cast<unsigned long long>(r.dropped_by_kernel));
-  // The kernel drops datagrams for which it has no room. The receiver shows all others.
+  // The kernel drops datagrams if the receive buffer is full. If it dropped none, the receiver has
+  // received each slice.
   if (r.dropped_by_kernel == 0) {
     EXPECT_EQ(r.received, sender.slices_sent());
   }
@@ -145,7 +148,7 @@ INSTANTIATE_TEST_SUITE_P(Floods, Garbage,
                                            Flood{"random bytes, SRTP", false, true},
                                            Flood{"RTP of random streams, SRTP", true, true}));
 
-/// A second LiDAR for a sink that plays: its elements and its pad.
+/// The elements of a second LiDAR, and their pad of a sink that already plays.
 struct Branch {
   explicit Branch(Pipeline* pipeline) : owner(pipeline), net(pipeline->Child("net")) {
     bin = gst_parse_bin_from_description(
@@ -158,10 +161,11 @@ struct Branch {
     gst_pad_link(from.get(), pad.get());
     gst_element_sync_state_with_parent(bin);
   }
-  /// Returns how many slices the LiDAR sent.
+  /// Removes the second LiDAR. Returns the number of slices that it has sent.
   std::uint64_t Remove() {
     gst_element_set_state(bin, GST_STATE_PAUSED);
-    std::this_thread::sleep_for(milliseconds(200));  // a slice may be in the encoder
+    // Waits, because a slice may still be in the encoder.
+    std::this_thread::sleep_for(milliseconds(200));
     const std::uint64_t sent = owner->Stat("second", "slices-sent");
     gst_element_set_state(bin, GST_STATE_NULL);
     gst_element_release_request_pad(net.get(), pad.get());
@@ -174,7 +178,7 @@ struct Branch {
   gst::PadPtr pad;
 };
 
-/// A receiver that makes a depayloader for each stream.
+/// A receiver that adds a depayloader for each new stream.
 struct ReceiverOfAll {
   explicit ReceiverOfAll(std::uint16_t port)
       : pipeline("pipeline.( screamsrc name=net eos-on-bye=false port=" + std::to_string(port) +

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Streams for hours through a link with random faults, and checks invariants each minute.
+// Sends a stream for hours through a link with random faults, and checks each minute what must hold
+// at any time (for example, that the memory does not grow).
 #include <gio/gio.h>
 
 #include <algorithm>
@@ -23,19 +24,19 @@ using namespace lidar::test;  // NOLINT
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-constexpr std::uint64_t kMaxGrowth = std::uint64_t{8} << 20;  // bytes, since the first minutes
+constexpr std::uint64_t kMaxGrowth = std::uint64_t{8} << 20;  // [bytes] since the warm-up
 constexpr unsigned kWarmUp = 5;                               // minutes
-constexpr std::uint64_t kInFlight = 4;                        // slices on their way during a check
+constexpr std::uint64_t kInFlight = 4;                        // slices that may be on their way during a check
 
 struct Options {
   unsigned minutes = 0;
   unsigned seed = 1;
   bool srtp = false;
-  std::string link;   // the program lidar-link, if there is a trace
-  std::string trace;  // file with the capacity of the link; empty: without limit
+  std::string link;   // path of lidar-link, which is needed for a trace
+  std::string trace;  // file with the capacity of the link, or empty if it is unlimited
 };
 
-/// lidar-link between the sender and the link with faults.
+/// The program lidar-link, which runs between the sender and the link with faults.
 class Bottleneck {
  public:
   Bottleneck(const Options& o, std::uint16_t to) : port_(o.trace.empty() ? to : FreePort()) {
@@ -118,11 +119,11 @@ class Soak {
 
   unsigned compared() const { return compared_; }
 
-  /// Streams for a minute with faults in it. Returns false if a check fails.
+  /// Lets the stream run for a minute with random faults. Returns false if a check fails.
   bool Minute(unsigned minute) {
     const auto end = std::chrono::steady_clock::now() + seconds(60);
     std::string story;
-    // The link cannot see slices in encrypted packets.
+    // The link cannot find slices in encrypted packets, so it has no counts to compare with.
     comparable_ = !options_.srtp;
     while (std::chrono::steady_clock::now() + seconds(16) < end) {
       std::this_thread::sleep_for(milliseconds(1'000 + random_() % 4'000));
@@ -158,7 +159,8 @@ class Soak {
       foreign_ += receiver_->foreign();
       receiver_.reset();
       StartReceiver();
-      last_ = {};  // the new receiver counts from zero
+      // The counts of the new receiver begin at 0.
+      last_ = {};
       comparable_ = false;
       return "receiver restarts";
     }
@@ -168,8 +170,8 @@ class Soak {
       return "address changes";
     }
     const Fall fall = RandomFall(&random_);
-    // Packets that come too late count as lost, though the link let them pass; a flood may cost
-    // some, too.
+    // Counts can be compared only if the receiver gets all packets that the link sends. Packets
+    // that arrive too late count as lost there, and a flood may cause losses in the kernel.
     if (fall.fault.reorder_by > 0 || fall.fault.garbage_ratio > 0) comparable_ = false;
     link_.Set(fall.fault);
     std::this_thread::sleep_for(fall.length);
@@ -177,8 +179,9 @@ class Soak {
     return fall.name;
   }
 
-  /// Returns true if the receiver got as many slices as the link let through whole, or if this
-  /// minute is not compared, because slices may have been lost elsewhere.
+  /// Returns true if the receiver got as many slices as passed the link whole. Also returns true if
+  /// slices may have been lost elsewhere during this minute, because the numbers cannot be compared
+  /// then.
   bool BooksAgree(const Accounts& a) {
     const std::uint64_t whole = link_.counts().slices_whole;
     const std::uint64_t passed = whole - last_whole_;
@@ -229,8 +232,8 @@ class Soak {
   std::uint64_t foreign_ = 0;
   std::uint64_t base_memory_ = 0;
   std::uint64_t last_whole_ = 0;
-  bool comparable_ = true;  // whether this minute's counts are those of the link
-  unsigned compared_ = 0;   // minutes
+  bool comparable_ = true;  // whether the counts of receiver and link must agree
+  unsigned compared_ = 0;   // number of minutes that were compared
   Accounts last_;
 };
 

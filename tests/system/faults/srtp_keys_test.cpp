@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Keys of SRTP in screamsink and screamsrc: where they come from, and how they change.
+// Tests the SRTP keys of screamsink and screamsrc: where the elements get a key from, and how it is
+// changed.
 #include <gtest/gtest.h>
 
 #include <thread>
@@ -15,7 +16,8 @@ using std::chrono::seconds;
 TEST_P(Srtp, ChangesItsKeyWithoutALoss) {
   const std::string options = GetParam().options + std::string(" ");
   Path path(options + Key(GetParam().key_bytes), options + Key(GetParam().key_bytes));
-  // The rollover counter is 1 when the key changes, and 0 again with the new key.
+  // The sequence numbers wrap before the first change of the key. So the rollover counter is 1 at
+  // that time, and starts at 0 again with the new key.
   g_object_set(path.sender.pipeline().Child("pay").get(), "seqnum-offset", 65'450, nullptr);
   path.Play();
   ASSERT_NE(path.receiver.NextCloud(seconds(5)), milliseconds::max());
@@ -79,7 +81,8 @@ TEST(Srtp, AKeyThatIsNoneOrWasUsedBeforeChangesNothing) {
     SetKey(sender, key);
     EXPECT_EQ(sender.Messages(GST_MESSAGE_WARNING), 1U) << key;
   }
-  SetKey(sender, std::string(60, '6'));  // the key in use is no change
+  // A key that is already in use is not a change.
+  SetKey(sender, std::string(60, '6'));
   EXPECT_EQ(sender.Messages(GST_MESSAGE_WARNING), 0U);
   std::this_thread::sleep_for(milliseconds(500));
   ExpectNothingLost(&path);
@@ -91,7 +94,9 @@ TEST(Srtp, FindsAStreamWhoseKeyItGetsLate) {
   path.Play();
   ASSERT_NE(path.receiver.NextCloud(seconds(5)), milliseconds::max());
   SetKey(path.sender.pipeline(), std::string(60, '6'));
-  WaitForRefused(path, 150);  // after the wrap: the rollover counter of the new key is 1
+  // After as many packets the sequence numbers have wrapped, and the rollover counter of the new
+  // key is 1.
+  WaitForRefused(path, 150);
   SetKey(path.receiver.pipeline(), std::string(60, '6'));
   EXPECT_LT(path.receiver.NextCloud(seconds(8)), seconds(3));
 }
@@ -104,7 +109,8 @@ TEST(Srtp, KeepsItsKeyWhereOneIsRefused) {
   path.sender.pipeline().SetState(GST_STATE_NULL);
   path.sender.pipeline().SetState(GST_STATE_PLAYING);
   EXPECT_NE(path.receiver.NextCloud(seconds(5)), milliseconds::max());
-  // Two keys may wait for the sender. A third would replace the key in use, and is refused.
+  // The receiver accepts two keys that the sender does not use yet. A third key would replace the
+  // key in use, so the receiver refuses it.
   for (const char digit : {'6', '7'}) SetKey(path.receiver.pipeline(), std::string(60, digit));
   EXPECT_EQ(path.receiver.pipeline().Messages(GST_MESSAGE_WARNING), 0U);
   SetKey(path.receiver.pipeline(), std::string(60, '8'));
@@ -123,7 +129,7 @@ TEST(Srtp, ForgetsTheOldKeyAfterTheStragglers) {
   SetKey(path.receiver.pipeline(), std::string(60, '6'));
   SetKey(path.sender.pipeline(), std::string(60, '6'));
   std::this_thread::sleep_for(seconds(11));
-  // A sender that still has the old key is now a stranger.
+  // The receiver has forgotten the old key by now, so it refuses a sender that still uses the key.
   path.sender.pipeline().SetState(GST_STATE_NULL);
   SetKey(path.sender.pipeline(), std::string(60, '5'));
   path.sender.pipeline().SetState(GST_STATE_PLAYING);
@@ -155,7 +161,8 @@ TEST(Srtp, CarriesSeveralStreamsThroughAChangeOfKey) {
   std::this_thread::sleep_for(seconds(1));
   SetKey(receiver, std::string(60, '6'));
   SetKey(sender, std::string(60, '6'));
-  EXPECT_TRUE(sender.AwaitEnd(seconds(30)));  // after 240 buffers
+  // The source ends after 240 buffers.
+  EXPECT_TRUE(sender.AwaitEnd(seconds(30)));
   std::this_thread::sleep_for(milliseconds(300));
   for (const std::string n : {"1", "2"}) {
     EXPECT_EQ(sender.Stat(("pay" + n).c_str(), "slices-sent"), 240U);

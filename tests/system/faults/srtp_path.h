@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// screamsink and screamsrc with SRTP, and a link between them that can read and forge packets.
+// A test setup of a screamsink and a screamsrc with SRTP. The link between them can read and forge
+// packets.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -39,7 +40,8 @@ struct Suite {
 };
 class Srtp : public ::testing::TestWithParam<Suite> {};
 
-/// Expects that everything that was sent came out, and nothing else, and that both ends have ended.
+/// Ends the stream. Expects that the receiver showed exactly the slices that were sent, and that
+/// both ends have ended.
 inline void ExpectNothingLost(Path* path) {
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
   EXPECT_TRUE(path->sender.pipeline().Finish(std::chrono::seconds(5)));
@@ -57,7 +59,7 @@ inline void SetKey(Pipeline& pipeline, const std::string& key) {
   g_object_set(pipeline.Child("net").get(), "srtp-key", key.c_str(), nullptr);
 }
 
-/// Waits until the receiver has refused `packets` packets.
+/// Waits until the receiver has refused at least `packets` packets.
 inline void WaitForRefused(Path& path, std::uint64_t packets) {
   for (int i = 0; i < 3'000; ++i) {
     if (path.receiver.pipeline().Stat("net", "srtp-refused") >= packets) return;

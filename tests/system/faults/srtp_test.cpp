@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// SRTP in screamsink and screamsrc, over loopback and through a link that can read and forge
+// Tests SRTP in screamsink and screamsrc: over loopback, and through a link that can read and forge
 // packets.
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ TEST_P(Srtp, CarriesTheStreamAndItsFeedbackHidden) {
   EXPECT_GT(path.receiver.clouds(), 80U);
   EXPECT_EQ(path.receiver.foreign(), 0U);
   EXPECT_EQ(path.receiver.accounts().lost, 0U);
-  // The link sees packets, but cannot see slices in them.
+  // The packets are encrypted, so the link recognises slices in them only by chance.
   EXPECT_GT(path.link.counts().packets, 100U);
   EXPECT_LT(path.link.counts().slices, 3U);
   Pipeline& sender = path.sender.pipeline();
@@ -30,7 +30,7 @@ TEST_P(Srtp, CarriesTheStreamAndItsFeedbackHidden) {
   EXPECT_EQ(sender.Stat("net", "packets-lost"), 0U);
   EXPECT_EQ(sender.Stat("net", "srtp-refused"), 0U);
   EXPECT_EQ(path.receiver.pipeline().Stat("net", "srtp-refused"), 0U);
-  // EOS still sends a goodbye, encrypted, and the receiver ends.
+  // At EOS the sender sends an encrypted BYE, which ends the stream of the receiver.
   EXPECT_TRUE(sender.Finish(seconds(5)));
 }
 INSTANTIATE_TEST_SUITE_P(Ciphers, Srtp,
@@ -72,7 +72,8 @@ TEST(Srtp, RefusesPacketsThatAreNotProtected) {
 }
 
 TEST(Srtp, RefusesFeedbackThatIsNotAuthenticated) {
-  // A receiver without the key cannot read the media, but it sends reports on what looks like RTP.
+  // The receiver has no key, so it cannot read the media. It still sends reports, because the
+  // packets look like RTP.
   Path path(Key(30), "");
   path.Play();
   std::this_thread::sleep_for(seconds(2));
@@ -104,11 +105,12 @@ TEST(Srtp, IsJoinedAmongAFloodOfStrangers) {
   std::this_thread::sleep_for(seconds(1));
   const auto clouds = path.receiver.clouds();
   std::this_thread::sleep_for(seconds(1));
-  EXPECT_GT(path.receiver.clouds(), clouds + 30);  // of 80 sent
+  // The sender sends 80 slices during this second.
+  EXPECT_GT(path.receiver.clouds(), clouds + 30);
   EXPECT_EQ(path.receiver.pipeline().Messages(GST_MESSAGE_WARNING), 1U);
 }
 
-/// Waits until the sender has sent `packets` packets.
+/// Waits until at least `packets` packets have passed the link.
 void WaitForPackets(const Path& path, std::uint64_t packets) {
   for (int i = 0; i < 3'000; ++i) {
     if (path.link.counts().packets >= packets) return;
@@ -121,12 +123,14 @@ TEST(Srtp, IsJoinedAfterTheSequenceNumbersWrapped) {
   Path path(Key(30) + " sender-report-interval=100000000", Key(30));
   g_object_set(path.sender.pipeline().Child("pay").get(), "seqnum-offset", 65'526, nullptr);
   path.sender.pipeline().SetState(GST_STATE_PLAYING);
-  // The sequence number wraps after ten packets, and the receiver starts after 65: after the
-  // sender's first window of 57 packets, and before feedback lets many more leave.
+  // The sequence numbers wrap after ten packets. The receiver starts after 65 packets. By then the
+  // sender has used up its first window of 57 packets, and there is no feedback yet that would let
+  // it send many more.
   WaitForPackets(path, 65);
   path.receiver.pipeline().SetState(GST_STATE_PLAYING);
   EXPECT_NE(path.receiver.NextCloud(seconds(20)), milliseconds::max());
-  // The receiver tries more values of the rollover counter than 0 for the first packet.
+  // No packet is refused, because the receiver tries other values of the rollover counter than 0
+  // for the first packet.
   EXPECT_EQ(path.receiver.pipeline().Stat("net", "srtp-refused"), 0U);
 }
 
@@ -163,7 +167,8 @@ TEST(Srtp, ForgetsNothingForForgedPackets) {
   std::this_thread::sleep_for(seconds(2));
   path.link.Set({});
   EXPECT_LT(path.receiver.NextCloud(seconds(8)), seconds(1));
-  // The receiver still refuses duplicates of what it received.
+  // The forged packets have not changed the replay window, so the receiver still refuses duplicates
+  // of packets that it received.
   const auto before = path.receiver.pipeline().Stat("net", "srtp-refused");
   Fault twice;
   twice.duplicate = 1;

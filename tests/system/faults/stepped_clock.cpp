@@ -13,7 +13,7 @@ namespace {
 
 std::atomic<int> offset{0};
 
-/// Steps the SCM_TIMESTAMPNS of one message.
+/// Adds the offset to the arrival time (SCM_TIMESTAMPNS) of a message.
 void StepArrival(msghdr* message) {
   for (cmsghdr* c = CMSG_FIRSTHDR(message); c != nullptr; c = CMSG_NXTHDR(message, c))
     if (c->cmsg_level == SOL_SOCKET && c->cmsg_type == SCM_TIMESTAMPNS)
@@ -24,7 +24,8 @@ void StepArrival(msghdr* message) {
 
 void lidar::test::StepWallClock(int seconds) { offset += seconds; }
 
-// The program's functions come before those of libc, for the plugins that it loads, too.
+// These functions of the program replace the functions of libc. The plugins that the program loads
+// use them, too.
 extern "C" {
 
 __attribute__((visibility("default"))) int clock_gettime(clockid_t clock, timespec* t) noexcept {

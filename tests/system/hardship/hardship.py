@@ -173,7 +173,7 @@ def many_receivers(options):
     assert threads <= 2 * count + 5, f"{threads} threads for {count} receivers"
     took = victim.ask("null")["took"]
     assert took < 1000 * PATIENCE, f"stopping took {took} ms"
-    # GLib ends threads without work after a while, but keeps 8 from version 2.84 on.
+    # GLib ends idle threads of its pool after a while. It keeps 8 of them since version 2.84.
     ended = comes_true(lambda: victim.ask()["threads"] - few <= 8)
     assert ended, f"{victim.last['threads'] - few} threads are left"
     victim.close()

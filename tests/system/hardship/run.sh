@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Builds, and runs the hardships for longer than the test does: processes stop for 20 s, say.
+# Builds the programs, and runs the hardships for longer than the test of the suite does. Processes
+# are stopped for 20 s, for example.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 

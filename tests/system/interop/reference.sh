@@ -1,12 +1,14 @@
 #!/bin/bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Runs our sender against the receiver of EricssonResearch/scream and the other way round, through lidar-link.
+# Runs the sender of this project against the receiver of EricssonResearch/scream, and their sender
+# against the receiver of this project. The packets pass through lidar-link.
 #
 #   tests/system/interop/reference.sh FOLDER [BUILD]
 #
-# FOLDER has scream_bw_test_tx and scream_bw_test_rx (SCREAM_REFERENCE names it too). Without it the test is
-# skipped (exit 77). Needs root: the reference's sender binds the port that it sends to, so it runs in a
-# network namespace of its own.
+# FOLDER contains scream_bw_test_tx and scream_bw_test_rx. The variable SCREAM_REFERENCE may name
+# this folder, too. Without the folder the test is skipped (exit code 77). It needs root: the
+# reference's sender binds the port number to which it sends, so it must run in a network namespace
+# of its own.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 folder=${1:-${SCREAM_REFERENCE:-}}

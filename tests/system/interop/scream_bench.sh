@@ -1,7 +1,8 @@
 #!/bin/bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Runs scream-bench against itself: IPv4 and IPv6, feedback to the media's source and to a port that is named; either end
-# stops on SIGINT with its summary.
+# Runs scream-bench against itself over IPv4 and over IPv6. The feedback goes to the source port of
+# the media, or to a port that an option names. Checks that each end stops on SIGINT and writes its
+# summary.
 #
 #   tests/system/interop/scream_bench.sh BUILD
 set -euo pipefail
@@ -38,7 +39,7 @@ assert float(rows[-1]["rtt_ms"]) > 0, "no feedback"
 PYTHON
 }
 
-# Without an answer the program fails.
+# Starts the sender without a receiver. It must fail, because it gets no answer.
 status=0
 "$build/src/tools/scream-bench" tx --host 127.0.0.1 --port "$port" --duration 1 >/dev/null 2>"$folder/tx.err" || status=$?
 [ $status = 1 ] && grep -q "No feedback arrived" "$folder/tx.err" || { echo "tx without rx: exit code $status"; cat "$folder/tx.err"; exit 1; }

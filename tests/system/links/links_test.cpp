@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// screamsink over several links whose interfaces, addresses and routes come and go.
+// Tests screamsink over several links while their interfaces, addresses and routes are added and
+// removed.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -12,7 +13,7 @@
 namespace lidar::test {
 namespace {
 
-/// A message scream-link-changed.
+/// The content of a message scream-link-changed.
 struct Changed {
   std::string link;
   bool usable = false;
@@ -42,7 +43,7 @@ class Links : public ::testing::Test {
     WaitForMore(20);
   }
 
-  /// Waits until the receiver has got `packets` more packets.
+  /// Waits until the receiver has got `packets` more packets than at the time of the call.
   void WaitForMore(guint packets) {
     const guint from = receiver_->passed;
     for (int i = 0; i < 2'000 && receiver_->passed < from + packets; ++i) g_usleep(10'000);
@@ -57,7 +58,8 @@ class Links : public ::testing::Test {
     ADD_FAILURE() << "link " << link << " is not in use";
   }
 
-  /// Returns the next message. A warning or an error instead of it fails the test.
+  /// Returns the content of the next scream-link-changed message. The test fails if a warning or an
+  /// error comes first.
   Changed NextChange() {
     const MessagePtr message = sender_->Wait(
         static_cast<GstMessageType>(GST_MESSAGE_ELEMENT | GST_MESSAGE_WARNING | GST_MESSAGE_ERROR));

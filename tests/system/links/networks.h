@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A robot and an edge in network namespaces of their own, with Ethernets between them.
+// Two network namespaces, of a robot and of an edge, with Ethernet links between them.
 #pragma once
 #include <string>
 
@@ -7,17 +7,20 @@ namespace lidar::test {
 
 class Networks {
  public:
-  /// Returns false if the user may not make networks, or iproute2 is missing.
+  /// Creates the namespaces. Returns false if the user may not create any, or if iproute2 is
+  /// missing.
   bool Create();
   ~Networks();
 
-  /// The calling thread, and threads that it starts, are in this network from now on.
+  /// Moves the calling thread into the robot's or the edge's namespace. Threads that it starts
+  /// later are in the same namespace.
   void EnterRobot() const;
   void EnterEdge() const;
-  /// Makes Ethernet `n`: the robot's interface rN has 10.9.N.`host`, the edge's eN has 10.9.N.1.
+  /// Makes Ethernet link `n`. The robot's interface rN gets the address 10.9.N.`host`, and the
+  /// edge's interface eN gets 10.9.N.1.
   void Connect(int n, int host = 2) const;
   void Disconnect(int n) const;
-  /// Runs a command in the robot's network. The test fails if the command fails.
+  /// Runs a command in the robot's namespace. The test fails if the command fails.
   void Robot(const std::string& command) const;
 
  private:

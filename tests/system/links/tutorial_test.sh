@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Runs docs/tutorials/two-links.md as it is printed, in network namespaces: tutorial_test.sh ROOT
+# Runs the commands of docs/tutorials/two-links.md as they are printed there, in network namespaces:
+# tutorial_test.sh ROOT
 set -euo pipefail
 page=$1/docs/tutorials/two-links.md
 robot=lidar-robot$$

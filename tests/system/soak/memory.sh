@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Runs the demo and reads the private memory of its processes each second; fails if an end or the
-# link has grown since the first minute. Usage: memory.sh [MINUTES [OPTIONS OF THE
-# DEMO]]
+# Runs the demo, and reads the private memory of its processes each second. Fails if the memory of
+# an end or of the link is larger than in the first minute.
+# Usage: memory.sh [MINUTES [OPTIONS OF THE DEMO]]
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../../.." && pwd)
 seconds=$((60 * ${1:-4}))
@@ -23,7 +23,7 @@ while kill -0 $demo 2>/dev/null; do
 done >"$work/samples"
 wait $demo || { tail -5 "$work/log"; echo "FAILED: the demo does not hold" >&2; exit 1; }
 
-# The last two seconds do not count: the demo ends then.
+# The last two seconds are left out, because the processes of the demo end then.
 awk -v allowed="$allowed" '
   $1 !~ /^lidar/ { next }
   !($1 in start) { start[$1] = $2 }

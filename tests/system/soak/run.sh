@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Streams for hours, encrypted, through a drive with gaps and random faults. Each minute it checks
-# what must hold, and prints a line.
+# Sends an encrypted stream for hours through a link that follows a drive with gaps and has random
+# faults. Checks the stream once per minute, and prints a line.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../../.." && pwd)
 build=$(realpath -m "${BUILD_DIR:-$root/build}")
@@ -30,7 +30,7 @@ plugins=$(find "$build/gst" "$build/ext" -name 'libgst*.so' -printf '%h\n' | sor
 export GST_PLUGIN_PATH_1_0=$plugins GST_REGISTRY=$build/soak-registry.bin
 link=()
 if [ "$gaps" = yes ]; then
-  # A drive with handovers and edges of cells; it starts again after ten minutes.
+  # The trace is a drive with handovers and with cell edges. It repeats every ten minutes.
   trace=$(mktemp)
   trap 'rm -f "$trace"' EXIT
   "$build/src/tools/lidar-trace" --duration 600 --rate 2 --seed "$seed" >"$trace"

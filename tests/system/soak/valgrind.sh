@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Both ends of a stream under valgrind's memcheck: no invalid access, no use of uninitialised
-# memory, and no leak from a function of ours. Valgrind slows them thirtyfold, so the sensor is a
-# small one.
+# Runs both ends of a stream under valgrind's memcheck. Fails if it finds an invalid access, a use
+# of uninitialised memory, or a leak of a function of this project. The sensor is a small one,
+# because valgrind makes the pipelines about thirty times slower.
 set -euo pipefail
 command -v valgrind >/dev/null || { echo "Install valgrind." >&2; exit 1; }
 source "$(dirname "$0")/../../../pipelines/environment.sh"
@@ -14,7 +14,7 @@ export G_SLICE=always-malloc GST_REGISTRY_FORK=no LIDAR_SRTP_KEY
 LIDAR_SRTP_KEY=$(printf '5a%.0s' {1..30})
 gst-inspect-1.0 screamsink >/dev/null # makes the registry without valgrind
 
-# check NAME PIPELINE...
+# check NAME PIPELINE...: runs the pipeline under valgrind, and writes the findings to $work/NAME.
 check() {
   local name=$1
   shift
@@ -34,7 +34,8 @@ wait $receiver
 echo "$(stat -c %s "$work/scans") bytes of scans came out"
 status=0
 for name in sender receiver; do
-  # A record ends with an empty line. A leak counts if one of its frames lies in a library of ours.
+  # Each record in the output ends with an empty line. A leak counts only if one of its stack frames
+  # is in a library of this project.
   awk -v RS='\n==[0-9]+== \n' '!/definitely lost/ || /(libgstlidar|libgstrtplidar|libgstecnudp|libgstouster)/' "$work/$name" >"$work/$name.found"
   echo "$name: $(grep -c 'definitely lost' "$work/$name" || true) leaks in libraries of others, $(grep -cE 'Invalid|uninitialised|definitely lost' "$work/$name.found" || true) errors of ours"
   if grep -qE 'Invalid|uninitialised|definitely lost|Mismatched' "$work/$name.found"; then cat "$work/$name.found"; status=1; fi

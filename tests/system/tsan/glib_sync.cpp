@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Shows ThreadSanitizer the order that GLib and GStreamer make: their locks are futexes of their
-// own and their reference counts inline atomics, which it cannot see. Preloaded by tests/run.sh
-// --tsan.
+// Wraps functions of GLib and GStreamer, so that ThreadSanitizer knows in which order threads run
+// because of them. GLib's locks are implemented with futexes, and reference counts with inline
+// atomics. ThreadSanitizer does not see either of these. tests/run.sh --tsan preloads this library.
 #include <dlfcn.h>
 #include <glib.h>
 #include <gst/gst.h>
 
 #include <mutex>
 
-// Macros of these names would hide the functions.
+// These macros have the same names as the functions that are defined below.
 #undef g_once_init_enter
 #undef g_once_init_leave
 
@@ -19,7 +19,8 @@ void __tsan_release(void*) __attribute__((weak));
 
 namespace {
 
-// Programs that a test starts preload this library, too, but lack ThreadSanitizer.
+// The functions are null in a program without ThreadSanitizer. A program that a test starts may be
+// such a program, because it preloads this library, too.
 void Acquire(void* p) {
   if (__tsan_acquire != nullptr) __tsan_acquire(p);
 }
@@ -34,8 +35,8 @@ Function Next(const char* name) {
 
 }  // namespace
 
-// Wraps the function NAME of GLib: what other threads did before they unlocked `m` is seen after it
-// is locked.
+// The following macros define wrappers of GLib's lock functions. What a thread did before it
+// unlocked `m` happens before what another thread does after it has locked `m`.
 #define LOCKS(name, type)                                   \
   extern "C" void name(type* m) {                           \
     static auto* const next = Next<decltype(&name)>(#name); \
@@ -55,8 +56,8 @@ Function Next(const char* name) {
     Release(m);                                             \
     next(m);                                                \
   }
-// Wraps a function that drops a reference: the thread that frees the object has seen all that other
-// threads did.
+// Defines a wrapper of a function that drops a reference. What any thread did before it dropped its
+// reference happens before the object is freed.
 #define UNREFS(name, type)                                  \
   extern "C" void name(type o) {                            \
     static auto* const next = Next<decltype(&name)>(#name); \
@@ -96,7 +97,8 @@ gboolean g_cond_wait_until(GCond* cond, GMutex* mutex, gint64 end) {
   return signalled;
 }
 
-// Each holder hands a buffer on, and only a sole holder writes to it.
+// A thread may write to a buffer only while it has the only reference. What other threads did
+// before they dropped their references happens before that.
 gboolean gst_mini_object_is_writable(const GstMiniObject* o) {
   static auto* const next =
       Next<decltype(&gst_mini_object_is_writable)>("gst_mini_object_is_writable");
@@ -118,7 +120,8 @@ GstMiniObject* gst_mini_object_ref(GstMiniObject* o) {
   return next(o);
 }
 
-// Queues: what a thread did before it put something in is seen by the thread that takes it out.
+// Wrappers for queues: what a thread did before it pushed an item happens before another thread
+// pops the item.
 void g_async_queue_push(GAsyncQueue* queue, gpointer data) {
   g_async_queue_lock(queue);
   Acquire(queue);
@@ -150,7 +153,8 @@ gpointer g_async_queue_pop(GAsyncQueue* queue) {
     if (gpointer const data = g_async_queue_timeout_pop(queue, G_USEC_PER_SEC)) return data;
 }
 
-// The thread of a pool sees what was done before it got its work.
+// The arguments of a thread pool. What was done before work was pushed to the pool happens before a
+// thread of the pool runs the work.
 struct PoolWork {
   GFunc function;
   gpointer user_data;
@@ -190,8 +194,9 @@ GstMessage* gst_bus_timed_pop_filtered(GstBus* bus, GstClockTime timeout, GstMes
   GstMessage* const message = next(bus, timeout, types);
   Acquire(bus);
   if (message != nullptr) Acquire(message);
-  // GStreamer drops the poster's reference where ThreadSanitizer does not see it. Waiting for that
-  // makes sure that the poster does not free the message.
+  // The thread that posted the message drops its reference in code that ThreadSanitizer does not
+  // see. Waits until it has done so, because ThreadSanitizer would report a race if that thread
+  // freed the message.
   for (int i = 0; message != nullptr && i < 100 && GST_MINI_OBJECT_REFCOUNT_VALUE(message) > 1; ++i)
     g_usleep(1000);
   return message;
@@ -205,8 +210,9 @@ GstMessage* gst_bus_pop_filtered(GstBus* bus, GstMessageType types) {
 }
 GstMessage* gst_bus_pop(GstBus* bus) { return gst_bus_pop_filtered(bus, GST_MESSAGE_ANY); }
 
-// Main contexts: the thread that dispatches a source has seen what was done before it was attached.
-// All contexts share a lock, because a function that polls does not get its context.
+// Wrappers for main contexts: what a thread did before it attached a source happens before another
+// thread dispatches the source. All contexts share a mutex, because a poll function does not get
+// the context as an argument.
 static std::mutex attaching;
 
 guint g_source_attach(GSource* source, GMainContext* context) {
@@ -232,7 +238,8 @@ GMainContext* g_main_context_new() {
   return context;
 }
 
-// A context with a source of high priority does not poll before it dispatches that source.
+// g_main_loop_quit() needs the mutex as well, because a context with a source of high priority
+// dispatches it without polling.
 void g_main_loop_quit(GMainLoop* loop) {
   static auto* const next = Next<decltype(&g_main_loop_quit)>("g_main_loop_quit");
   const std::lock_guard lock(attaching);

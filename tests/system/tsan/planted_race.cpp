@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Two streaming threads count in callbacks that GStreamer calls, as elements do. That is a race,
-// except with `--locked`. Shows that tests/run.sh --tsan would find such a race.
+// Lets two streaming threads increment a counter in callbacks that GStreamer calls, as elements do.
+// That is a data race unless the option `--locked` is given. The test shows that tests/run.sh
+// --tsan finds such a race.
 #include <gst/gst.h>
 
 #include <string>

@@ -21,8 +21,8 @@ class Edge:
 
     def __init__(self, model="os1-64", coder="", mbit=2, sink=""):
         self.port, media = free_port(), free_port()
-        # A tee serves its branches in turn: a slice that foxglovesink holds up comes late to the
-        # second branch.
+        # A tee pushes a buffer to its branches one after the other. If foxglovesink blocked, the
+        # buffer would arrive late in the second branch.
         pipeline = (
             f"screamsrc port={media} ! rtplidardepay ! tee name=t t. ! identity ! foxglovesink port={self.port} {sink} "
             "t. ! fakesink name=behind sync=false async=false signal-handoffs=true"

@@ -123,7 +123,7 @@ def main():
         own.run(0.2)
         assert all(topic.startswith("/r7/") for topic in own.channels), own.channels.keys()
         go_back(own)
-        # A viewer subscribes to a channel of another robot, by its number.
+        # A viewer of r7 tries to subscribe to a channel of r8 by the channel's number.
         other = both.channels["/r8/points/slices"]["id"]
         own.forget()
         own.socket.send(json.dumps({"op": "subscribe", "subscriptions": [{"id": 8, "channelId": other}]}))

@@ -12,14 +12,16 @@ from edge import Edge
 from viewer import Bottleneck, Viewer
 
 SETTLE, SECONDS, MANY = 5, 20, 20
-# Name, Mbit/s and one-way delay [s] of a link, least scans a second, greatest age [ms].
+# The columns are: the name of a link, its rate [Mbit/s], its one-way delay [s], the least number of
+# scans per second, and the greatest age [ms].
 LINKS = [
     ("loopback", None, None, 9.5, 100),
     ("4 Mbit/s, 80 ms round trip", 4, 0.04, 9.5, 400),
     ("1 Mbit/s, 80 ms round trip", 1, 0.04, 3, 600),
 ]
 MOST_OVER_SLICES, MOST_CORES = 1.1, 0.5
-# A slice spans 6 ms of the sensor's time; twenty viewers share two cores with the sensor.
+# The limit of the delay allows for the 6 ms of the sensor's time that a slice spans, and for twenty
+# viewers that share two cores with the sensor.
 MOST_DELAY = 10  # [ms] above the delay without viewers
 misses = []
 

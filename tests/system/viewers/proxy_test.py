@@ -21,7 +21,8 @@ from viewer import Viewer
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 TOKEN = "a-token-of-this-test"
 SKIPPED = 77
-# nginx cuts a connection that is silent for longer than IDLE_LIMIT [s]; a ping comes each 10 s.
+# nginx closes a connection that is silent for longer than IDLE_LIMIT [s]. The server sends a ping
+# every 10 s, so a connection must remain open for IDLE [s].
 IDLE_LIMIT, IDLE = 13, 20
 
 

@@ -172,7 +172,7 @@ class Bottleneck:
         while True:
             client = self.listener.accept()[0]
             server = socket.socket()
-            # A large buffer of the kernel would add to the buffer of the link.
+            # The kernel's buffer is small, because it adds to the buffer of the simulated link.
             server.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, self.BUFFER)
             server.connect(("127.0.0.1", self.target))
             for s in (client, server):

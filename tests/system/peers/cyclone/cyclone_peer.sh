@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# ros2sink and ros2src with a program of Cyclone DDS, whose types Cyclone's own compiler makes: with
-# and without their descriptions. Skipped if that compiler is missing.
+# Tests ros2sink and ros2src with a program that uses Cyclone DDS, with type descriptions and
+# without. Cyclone's own compiler generates the types of the program. The test is skipped if that
+# compiler is missing.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../../../.." && pwd)

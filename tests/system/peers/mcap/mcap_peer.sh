@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# MCAP's own library for JavaScript reads recordings of mcapsink. Skipped if npm cannot install it.
+# Tests that MCAP's own library for JavaScript can read recordings of mcapsink. The test is skipped
+# if npm cannot install the library.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../../../.." && pwd)
