@@ -1,12 +1,14 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Runs everything that tests the tree, and ends with a table of its steps. Takes hours.
+# Runs every test, check and measurement of the tree, and prints a table of these steps at the end.
+# Takes hours.
 set -uo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(dirname "$here")
 
-# Each step has a name, its needs beyond tests/packages.txt, and a command for the tree's root.
-# Steps run one after the other. The soak mostly waits, so it runs at the same time as all of them.
+# Each step consists of a name, the requirements beyond tests/packages.txt, and a command that runs
+# in the root of the tree. The steps run one after the other. Only the soak runs beside the others,
+# because it mostly waits.
 steps=(
   "soak|root|env BUILD_DIR=build-soak tests/system/soak/run.sh --minutes SOAK"
   "run|-|tests/run.sh"
@@ -74,10 +76,10 @@ done
 mkdir -p "$output" || exit 2
 output=$(cd "$output" && pwd)
 
-# wanted NAME: succeeds if --only and --skip leave the step NAME.
+# wanted NAME: succeeds if --only and --skip allow the step NAME.
 wanted() { [[ (-z $only || ,$only, == *,$1,*) && ,$skip, != *,$1,* ]]; }
 
-# lacks NEEDS: prints the first of NEEDS that this machine lacks.
+# lacks NEEDS: prints the first requirement of the list NEEDS that this machine does not fulfil.
 lacks() {
   local need
   while read -r need; do
@@ -92,7 +94,7 @@ lacks() {
 rows=$output/table
 printf '%-13s %-8s %8s  %s\n' step result seconds 'last line' >"$rows"
 row() { printf '%-13s %-8s %8s  %s\n' "$@" | tee -a "$rows"; } # STEP RESULT SECONDS LAST_LINE
-# take NAME COMMAND: runs a step and adds its row.
+# take NAME COMMAND: runs a step, and adds a row with its result to the table.
 take() {
   local began=$SECONDS result=ok
   # shellcheck disable=SC2086
@@ -106,7 +108,8 @@ for step in "${steps[@]}"; do
   if [ -n "$lacking" ]; then
     row "$name" skipped 0 "needs $lacking"
   elif [ "$name" = soak ]; then
-    # Jobs ignore Ctrl-C, so the soak has a process group, which the script ends when it exits.
+    # Jobs ignore Ctrl-C, so the script has to end the soak when it exits. For that the soak runs in
+    # a process group of its own.
     set -m
     take "$name" "$command" &
     soak_group=$!

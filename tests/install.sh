@@ -1,11 +1,13 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Installs the Debian packages that building, running and testing need; prints nothing if all are
-# installed. Usage: install.sh [LIST]
+# Installs the Debian packages that are needed to build, run and test. Prints nothing if all of them
+# are already installed.
+# Usage: install.sh [LIST]
 set -euo pipefail
 list=${1:-$(cd "$(dirname "$0")" && pwd)/packages.txt}
 
-# Lists installed packages and what they provide: Node.js from its makers, for one, provides npm.
+# Lists the installed packages and the packages that they provide. For example, the Node.js package
+# of its own makers provides npm.
 there=$(dpkg-query -W -f '${db:Status-Status}:${Package},${Provides}\n' | sed -n 's/^installed://p' | tr ',' '\n' |
   sed 's/(.*//; s/ //g')
 missing=()

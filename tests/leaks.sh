@@ -1,26 +1,28 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Runs each script of pipelines/ and each pipeline that the docs print, and fails if a process
-# leaves objects behind: GStreamer's leaks tracer reports them when it ends. Takes about five
-# minutes; needs a build.
+# Runs each script of pipelines/ and each pipeline that the docs print. Fails if a process has not
+# freed all its GStreamer objects when it ends. GStreamer's leaks tracer reports such objects. Takes
+# about five minutes, and needs a build.
 set -uo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 . "$root/pipelines/environment.sh"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-# Plugins are scanned once, here: a scanner under the tracer would write no leak report.
+# Scans the plugins here, before the tracer is enabled. A scanner process with the tracer would
+# write no leak report, and would be counted as an error.
 export GST_REGISTRY_1_0=$work/registry.bin
 gst-inspect-1.0 >"$work/plugins" || { echo "FAILED: the plugins cannot be listed"; exit 1; }
 export GST_REGISTRY_UPDATE=no GST_TRACERS=leaks GST_DEBUG=GST_TRACER:7,leaks:7 GST_DEBUG_NO_COLOR=1 GST_DEBUG_FILE=$work/log/%p
 status=0
 
-# The scripts ask gst-inspect-1.0 which elements exist; it runs without the tracer.
+# The scripts call gst-inspect-1.0 to check which elements exist. This wrapper runs it without the
+# tracer.
 mkdir "$work/bin"
 printf '#!/bin/sh\nGST_TRACERS= GST_DEBUG= exec %s "$@"\n' "$(command -v gst-inspect-1.0)" >"$work/bin/gst-inspect-1.0"
 chmod +x "$work/bin/gst-inspect-1.0"
 export PATH=$work/bin:$PATH
 
-# look NAME COMMAND...: runs the command and prints the objects that its processes left.
+# look NAME COMMAND...: runs the command, and prints which objects its processes have not freed.
 look() {
   local name=$1 alive processes silent
   shift
@@ -28,11 +30,14 @@ look() {
   mkdir "$work/log"
   "$@" >"$work/output" 2>&1 || { cat "$work/output"; echo "FAILED: $name does not run"; status=1; return; }
   processes=$(find "$work/log" -type f -size +0 | wc -l)
-  # GStreamer's dtlsdec keeps an agent for its generated certificates as long as the process lives.
+  # GStreamer's dtlsdec keeps an agent for generated certificates until the process ends. This
+  # object is not a leak.
   alive=$(grep -h 'object-alive, ' "$work"/log/* | sed -nE 's/.*type-name=\(string\)([A-Za-z]+).*/\1/p' | grep -v GstDtlsAgent | sort | uniq -c)
-  # A process that was killed has no report. Empty logs are those of gst-inspect-1.0.
+  # A process that was killed has written no report. Empty logs are not counted, because
+  # gst-inspect-1.0 writes them.
   silent=$(find "$work/log" -type f -size +0 -exec grep -L 'listed [0-9]* alive objects' {} + | wc -l)
-  # The process that is refused as a stranger may be killed before it ends.
+  # In this pipeline a process is refused because it is a stranger. It may be killed before it ends,
+  # so it may have no report.
   [ "$name" != secure-dtls ] || silent=$((silent > 1 ? silent - 1 : 0))
   printf '%-18s %3d processes, %d of which ended without looking, objects left: %s\n' "$name" "$processes" "$silent" "${alive:-none}"
   [ -z "$alive" ] && [ "$silent" = 0 ] && [ "$processes" -gt 0 ] || status=1

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Plants one small bug at a time, and prints which bugs the tests notice.
+# Applies patches with one small bug each, and prints for each bug whether the tests notice it.
 set -uo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(dirname "$here")
@@ -57,7 +57,8 @@ tree=$folder/tree
 build=$tree/build  # as in a usual tree, so that a compiler cache knows what it compiled there
 log=$folder/log
 
-# Files that have not changed keep their times, so that only changed ones are built again.
+# Copies the tree. Files that have not changed keep their modification times, so that only changed
+# files are built again.
 copy_tree() {
   mkdir -p "$tree"
   git -C "$root" ls-files --cached --others --exclude-standard | sort >"$folder/files"
@@ -68,7 +69,7 @@ copy_tree() {
   done <"$folder/files"
 }
 
-# Restores the files that a patch touched.
+# Restores the files that the last patch changed.
 restore() {
   local file
   while IFS= read -r file; do
@@ -82,15 +83,15 @@ compile() {
   ninja -C "$build" "$@" >"$log" 2>&1
 }
 
-# Introspects the build once: no patch touches a meson.build, so the targets of a test stay the
-# same.
+# Prints the name of a file with an introspection of the build. The build is introspected only once,
+# because no patch changes a meson.build and so the targets of a test remain the same.
 introspect() {
   [ "$folder/$1.json" -nt "$build/build.ninja" ] || meson introspect "$build" "--$1" >"$folder/$1.json"
   echo "$folder/$1.json"
 }
 
-# Prints the targets that the named tests need, as ninja calls them; without a name, those that both
-# suites need.
+# Prints the targets that the named tests need, in the form that ninja expects. Without a name,
+# prints the targets that the suites core and elements need.
 targets() {
   jq -rn --arg dir "$build/" --arg names "$*" \
     --slurpfile tests "$(introspect tests)" --slurpfile all "$(introspect targets)" '
@@ -100,14 +101,15 @@ targets() {
     | $all[0][] | select(.id | IN($needed[])) | .filename[] | ltrimstr($dir)'
 }
 
-# Runs the tests until one fails, and prints its name.
+# Runs the tests until one of them fails, and prints the name of that test. Fails if no test fails.
 first_failure() {
   meson test -C "$build" --no-rebuild --maxfail 1 "$@" >"$log" 2>&1 && return 1
   jq -r 'select(.result | IN("OK", "SKIP", "EXPECTEDFAIL") | not) | .name | sub(".*/ "; "")' \
     "$build/meson-logs/testlog.json" | head -1
 }
 
-# Prints the outcome of one patch: "noticed by TEST", "NOT NOTICED", or why there is no answer.
+# Prints the result of one patch: "noticed by TEST", "NOT NOTICED", or the reason why the patch
+# could not be tested.
 try_patch() {
   local patch=$1 tests failed wanted
   tests=$(sed -n 's/^Tests: //p;/^---/q' "$patch")

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Builds and tests the committed tree in a root of another release of Debian, or for arm64 by qemu; ends with one line of counts.
+# Builds and tests the committed tree in a root file system of another Debian release, or for arm64
+# with qemu. The last line of the output has the counts.
 set -euo pipefail
 top=$(cd "$(dirname "$0")/.." && pwd)
 
@@ -41,7 +42,8 @@ output=${output:-$top/build-releases/$name}
 mkdir -p "$output"
 output=$(cd "$output" && pwd)
 
-# Only lint needs these; the rules about the text of the tree hold in every release.
+# These packages are needed only for the suite lint, which does not run here. Its rules check the
+# text of the tree, which is the same in every release.
 only_lint='clang-format|clang-tidy|libgirepository1.0-dev'
 mapfile -t packages < <(sed 's/#.*//; /^[[:space:]]*$/d' "$top/tests/packages.txt" | grep -vxE "$only_lint")
 if [ "$name" = arm64 ]; then
@@ -61,7 +63,7 @@ trap 'leave_root "$root"' EXIT
 
 say() { echo "== $* ($SECONDS s)"; }
 
-# Installs those of the named packages that the release has, and prints the missing ones.
+# Installs the named packages that exist in the release, and prints the names of the others.
 install_packages() {
   inside "$root" "
     there= missing=
@@ -73,8 +75,8 @@ install_packages() {
   grep '^not in' "$output/install.log" || true
 }
 
-# A cross build takes tools of this machine, and libraries of arm64. foxglovesink and ouster-replay
-# are left out.
+# Installs the packages for a cross build: tools for this machine, and libraries for arm64.
+# foxglovesink and ouster-replay are not built.
 install_for_arm64() {
   local package foreign=()
   for package in "${packages[@]}"; do
@@ -87,7 +89,8 @@ install_for_arm64() {
   install_packages crossbuild-essential-arm64 qemu-user-static ccache git jq meson ninja-build pkg-config python3 "${foreign[@]}"
 }
 
-# Writes the cross file of meson, whose version 1.0 calls pkg-config pkgconfig.
+# Writes the cross file of meson. It uses the key pkgconfig, because version 1.0 of meson does not
+# know the newer name pkg-config.
 write_cross_file() {
   cat >"$root/src/arm64.ini" <<EOF
 [binaries]
@@ -123,8 +126,8 @@ make_ready() {
   cp "$top/tests/packages.txt" "$root/src/ready"
 }
 
-# The options are those of tests/run.sh, except that warnings of newer compilers are counted, not
-# fatal.
+# Builds the tree with the options of tests/run.sh, except that warnings are not errors. Newer
+# compilers have new warnings, so warnings are only counted.
 build_tree() {
   [ "$name" != arm64 ] || write_cross_file
   rm -rf "$root/src/gst-lidar"
@@ -134,7 +137,7 @@ build_tree() {
     ninja -C /src/build" >"$output/build.log" 2>&1
 }
 
-# test_suite NAME: prints "NAME passed/all", and the names of tests that failed.
+# test_suite NAME: runs a suite. Prints "NAME passed/all", and the names of the tests that failed.
 test_suite() {
   local suite=$1 log
   rm -f "$root/src/build/meson-logs/testlog.json"

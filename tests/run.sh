@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Installs what is missing, builds, and runs every suite; ends with the line "N passed, N failed".
+# Installs missing packages, builds the tree, and runs every suite. The last line of the output is
+# "N passed, N failed".
 set -uo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(dirname "$here")
@@ -58,22 +59,23 @@ failed=0
 failures=
 started=$SECONDS
 
-# Long simulations and command-line programs run the same code as other tests. A sanitizer makes
-# them many times slower.
+# These suites do not run under sanitizers, because a sanitizer makes them many times slower. The
+# code that they run is also run by other tests.
 dear=(simulation programs)
 without_dear=("${dear[@]/#/--no-suite=}")
-# Tests of elements wait for half of their time, so more of them run at a time than there are cores.
+# Tests of elements wait for half of their time, so more tests run in parallel than there are cores.
 waiting=(--num-processes $((2 * $(nproc))))
-# A time limit is for tests that hang: a busy machine only takes longer.
+# The time limits are long, because they only have to end tests that hang. A busy machine may make a
+# test much slower.
 patient=(--timeout-multiplier 40)
 
-# ccache takes the headers from the compiler's own list, so a file that is not in the cache is not
-# preprocessed twice.
+# Makes ccache use the list of headers that the compiler writes. ccache then needs no run of the
+# preprocessor for a file that is not in the cache.
 export CCACHE_DEPEND=${CCACHE_DEPEND:-1} CCACHE_SLOPPINESS=${CCACHE_SLOPPINESS:-pch_defines,time_macros}
 
-# targets DIR SUITE...: prints, in ninja's names, the targets that tests of the suites need, without
-# the tests in $dear. With the suite `product` it also prints the targets of the tests in $dear, and
-# all default targets outside of tests/.
+# targets DIR SUITE...: prints the targets that tests of the suites need, in the form that ninja
+# expects. Leaves out the tests in $dear. If one of the suites is `product`, includes the tests in
+# $dear and all default targets outside of tests/.
 targets() {
   local dir=$1
   shift
@@ -87,13 +89,16 @@ targets() {
     | .filename[] | ltrimstr($dir)'
 }
 
-# build DIR SUITES [meson options]: configures once, then builds what the suites need. Sanitizers'
-# reports need only line numbers; other debug information takes a third of the compiler's time.
-# Headers take most of the rest: a unity build reads them once for many files.
+# build DIR SUITES [meson options]: configures DIR if it is not yet configured, and builds the
+# targets that the suites need. The debug information has only line numbers, which are sufficient
+# for the reports of sanitizers. More debug information would need a third of the compiler's time.
+# Most of the remaining time is for headers, so a unity build is used: it reads a header once for
+# many files.
 build() {
   local dir=$1 needed_by=$2 linker=()
   shift 2
-  # 20 links take 1.4 s of CPU time by lld, 3.6 s by GNU ld. A linker that the caller names is kept.
+  # lld links 20 targets in 1.4 s of CPU time, GNU ld in 3.6 s. If the caller has set a linker, it
+  # is used instead.
   if [ -z "${CC_LD:-}${CXX_LD:-}" ] && command -v ld.lld >/dev/null; then linker=(CC_LD=lld CXX_LD=lld); fi
   echo "== build $(basename "$dir") (${SECONDS}s)"
   [ -f "$dir/build.ninja" ] || env "${linker[@]}" meson setup "$dir" "$root" -Dcpp_args=-g1 -Dwerror=true --unity on -Dunity_size=40 "$@" >"$dir.log" 2>&1 ||
@@ -105,29 +110,30 @@ build() {
     { grep -A12 -E 'FAILED|error:' "$dir.log" | head -60; return 1; }
 }
 
-# clang needs half of gcc's time for code full of checks. Its optimizer would still take minutes, so
-# only code that tests run for long has it.
+# Builds with clang, because it needs half of gcc's time for code with many checks. Optimization is
+# off by default, because it would take minutes. Only code that tests run for a long time is
+# optimized.
 build_sanitized() {
   local cache
   cache=$(command -v ccache)  # meson does not use ccache if a compiler is named
   CC="$cache clang" CXX="$cache clang++" build "$root/build-asan" "$sanitized" -Db_sanitize=address,undefined -Db_lundef=false -Doptimization=0 \
     -Dbenchmarks=disabled
 }
-# The sanitized build uses the processor time that the tests of the first build leave: they mostly
-# wait.
+# Starts the sanitized build in the background with idle priority. It uses the processor time that
+# is free during the tests of the first build, which mostly wait.
 start_sanitized() {
   build_sanitized &
   sanitized_job=$!
   chrt --idle -p 0 "$sanitized_job"
 }
-# hurry PID: ends the low priority of a process and its children. Without the right to do that, they
-# continue with the time that other processes leave.
+# hurry PID: gives a process and its children normal priority again. If this is not permitted, they
+# continue with idle priority.
 hurry() {
   local child
   chrt --other -p 0 "$1" 2>/dev/null
   for child in $(pgrep -P "$1"); do hurry "$child"; done
 }
-# Waits for the sanitized build, or builds. Succeeds if the build succeeded.
+# Waits for the sanitized build if it was started, or else runs it. Succeeds if the build succeeded.
 sanitized_ready() {
   if [ -z "$sanitized_result" ]; then
     if [ -n "$sanitized_job" ]; then
@@ -141,14 +147,16 @@ sanitized_ready() {
   return "$sanitized_result"
 }
 
-# Prints meson's output of a suite without the lines that are counted below.
+# Filters meson's output of a suite. Removes the lines with counts, because the counts are printed
+# at the end.
 shorten() { grep -vE '^$|^ninja|Full log|^(Ok|Expected Fail|Fail|Unexpected Pass|Skipped|Timeout):'; }
 
-# results DIR NAME: prints meson's logs called NAME, or NAME and the name of a wrapper.
+# results DIR NAME: prints the logs of meson that are called NAME or NAME-WRAPPER.
 results() { cat "$1/meson-logs/$2".json "$1/meson-logs/$2"-*.json 2>/dev/null; }
 forget() { rm -f "$1/meson-logs/$2".json "$1/meson-logs/$2"-*.json; }
 
-# tally LOG: adds the results in a log to the totals, and keeps the ends of what failed tests printed.
+# tally LOG: adds the results in a log to the totals. Keeps the last lines of the output of each
+# failed test.
 tally() {
   local counts ok bad
   counts=$(jq -s -r '[(map(select(.result == "OK" or .result == "EXPECTEDFAIL")) | length),
@@ -161,17 +169,18 @@ tally() {
       | "\n== \(.result): \(.name)", (((.stdout // "") + (.stderr // "")) / "\n" | .[-20:][] | "  " + .)' "$1")
 }
 
-# settle DIR SUITE NAME: adds the results of a suite in a log of meson to the totals.
+# settle DIR SUITE NAME: adds the results of SUITE in the log NAME of meson to the totals.
 settle() {
   local log=$1/meson-logs/settled.json
-  # Names are "gst-lidar:SUITE+SUITE / TEST".
+  # A test is called "gst-lidar:SUITE+SUITE / TEST" in the log.
   results "$1" "$3" |
     jq -c --arg suite "$2" 'select(.name | sub("^[^:]*:"; "") | sub(" / .*"; "") | split("+") | index($suite))' >"$log"
   [ -s "$log" ] || { echo "meson left no results of $2"; failed=$((failed + 1)); return; }
   tally "$log"
 }
 
-# run DIR SUITES [meson options]: runs the tests of the suites together, and adds their results to the totals.
+# run DIR SUITES [meson options]: runs the tests of several suites together, and adds their results
+# to the totals.
 run() {
   local dir=$1 suites suite chosen=()
   read -ra suites <<<"$2"
@@ -180,15 +189,16 @@ run() {
   echo "== $(basename "$dir"): ${suites[*]} (${SECONDS}s)"
   forget "$dir" testlog
   meson test -C "$dir" --no-rebuild "${patient[@]}" "${chosen[@]}" --print-errorlogs "$@" 2>&1 | shorten
-  # If a signal killed meson, tests may be missing.
+  # An exit code of 128 or more means that a signal killed meson. Results of tests may then be
+  # missing.
   [ "${PIPESTATUS[0]}" -lt 128 ] || failed=$((failed + 1))
   [ "${suites[*]}" != pipelines ] || return 0
   for suite in "${suites[@]}"; do settle "$dir" "$suite" testlog; done
 }
 
-# The pipelines stream in real time, so no more of them run at a time than there are cores. Tests of
-# the suite `beside` mostly wait or are not judged by time, so they run at the same time, with lower
-# priority.
+# Runs the suites `pipelines` and `beside` at the same time. Tests of pipelines stream in real time,
+# so at most one of them runs per core. Tests of the suite `beside` run with lower priority, because
+# they mostly wait or do not depend on time.
 run_pipelines() {
   local dir=$1
   forget "$dir" beside
@@ -203,8 +213,8 @@ run_pipelines() {
   settle "$dir" beside beside
 }
 
-# Tests of elements stream in real time and mostly wait. Other tests run at the same time, with the
-# processor time that the tests of elements leave.
+# Runs the suites core, fuzz and elements at the same time. Tests of elements stream in real time
+# and mostly wait. The other tests have idle priority, and use the processor time that is free.
 run_sanitized() {
   local dir=$1 rest
   forget "$dir" rest
@@ -221,7 +231,7 @@ run_sanitized() {
   settle "$dir" fuzz rest
 }
 
-# Counts the outcome of a step that is no meson test.
+# Counts the result of a step that is not a test of meson.
 count() { if [ "$1" = 0 ]; then passed=$((passed + 1)); else failed=$((failed + 1)); fi; }
 
 [ "$install" = no ] || "$here/install.sh" || exit 1
@@ -230,16 +240,17 @@ case $install,${suites[*]} in
 esac
 if [ "$install" = yes ] && [ "${suites[*]}" = browser ]; then
   for folder in "$root/ext/web/page" "$here/system/browser"; do
-    # Newer npm refuses a lock file without the optional packages of all platforms. Then npm install
-    # still takes the versions of that file.
+    # Newer versions of npm refuse a lock file that lacks the optional packages of other platforms.
+    # `npm install` accepts the file, and installs the versions that are in it.
     (cd "$folder" && { npm ci --silent --no-audit --no-fund || npm install --no-save --silent --no-audit --no-fund; }) ||
       { echo "npm cannot install what $folder/package.json asks for"; exit 1; }
   done
 fi
 
 needed_by=all
-# Elements and fuzz take a third of the time to compile and half of the time to test. A run of
-# all suites runs them only under the sanitizers, except the suite `plain`, which cannot run there.
+# The suites elements and fuzz take a third of the time to compile and half of the time to test. So
+# a run of all suites runs them only under the sanitizers. The exception is the suite `plain`, which
+# cannot run under sanitizers.
 if [ "$sanitize" = yes ] && [ ${#suites[@]} -gt 0 ]; then
   suites=(lint "core plain" pipelines bench)
   needed_by="product ${suites[*]} beside"
@@ -277,10 +288,11 @@ fi
 if [ "$tsan" = yes ]; then
   if build "$root/build-tsan" "core elements" -Db_sanitize=thread -Db_lundef=false -Doptimization=1 \
     -Dbenchmarks=disabled -Dtools=disabled -Dwerror=false; then
-    # A first run makes the registry, so that no test is blamed for races in plugins of others.
+    # Runs a few tests first, so that GStreamer's registry exists. Otherwise a test that creates the
+    # registry would report data races in plugins of other projects.
     meson test -C "$root/build-tsan" --no-rebuild common >/dev/null 2>&1
     for suite in core elements; do
-      # ThreadSanitizer makes a coder twenty times slower.
+      # The time limits are much longer, because ThreadSanitizer makes a coder twenty times slower.
       run "$root/build-tsan" "$suite" "${without_dear[@]}" --timeout-multiplier 200
     done
   else

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Runs clang-tidy over the sources. A build directory of its own compiles them one by one, without
-# precompiled headers, so that a missing include is an error: tests/tidy.sh [BUILD_DIR] [PATH_REGEX]
+# Runs clang-tidy over the sources. It uses a build directory of its own, where each source file is
+# compiled alone and without precompiled headers. So a missing #include is an error.
+# Usage: tests/tidy.sh [BUILD_DIR] [PATH_REGEX]
 set -uo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 build=${1:-$root/build-tidy}
