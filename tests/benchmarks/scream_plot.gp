@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Plots what scream-matrix --samples wrote:
+# Plots a file that scream-matrix --samples has written:
 #   gnuplot -e "csv='e.csv'; png='e.png'" tests/benchmarks/scream_plot.gp
 set datafile separator comma
 set terminal pngcairo size 900,900 font ",10"

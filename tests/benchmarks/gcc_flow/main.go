@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 
-// gcc_flow sends a video-like stream whose rate pion's Google Congestion Control sets, over UDP.
+// gcc_flow sends a stream like video over UDP. Google Congestion Control, as implemented by pion,
+// sets its rate.
 //
-//	gcc_flow rx PORT        reports what arrives, as transport-wide feedback every 50 ms
-//	gcc_flow tx HOST:PORT   sends 50 frames a second of the target bitrate
+//	gcc_flow rx PORT        sends transport-wide feedback about received packets every 50 ms
+//	gcc_flow tx HOST:PORT   sends 50 frames per second at the target bitrate
 //
 // It needs Debian's golang-go and golang-github-pion-interceptor-dev (GOPATH=/usr/share/gocode).
 package main
@@ -111,7 +112,7 @@ func send(to string) error {
 	if err != nil {
 		return err
 	}
-	// A packet has its number before it waits in the pacer.
+	// A packet gets its number before it waits in the pacer.
 	chain, err := build(control, numbers)
 	if err != nil {
 		return err

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Runs axe, a checker of accessibility, on the page as it stands.
+// Runs axe, which checks the accessibility of the page in its present state.
 import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Compares the page's decoder with the native one, on the streams of decoder_cases.
+// Compares the results of the page's decoder with those of the native decoder, for the streams that
+// decoder_cases writes.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { readdirSync, readFileSync } from 'node:fs';
@@ -107,7 +108,7 @@ test('a sensor model that is damaged is refused', () => {
   let opened = 0;
   for (const file of readdirSync(corpus)) {
     const model = readFileSync(`${corpus}/${file}`);
-    if (model.length === 0) continue; // an empty model means points
+    if (model.length === 0) continue; // an empty model stands for a cloud without a sensor model
     try {
       opened += new Decoder(module, model) ? 1 : 0;
     } catch (error) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A server like foxglovesink, whose channels and messages a test chooses. The server keeps what the
-// page sends.
+// A server that speaks the protocol of foxglovesink. A test chooses its channels and messages. The
+// server records what the page sends.
 import { execFileSync } from 'node:child_process';
 import { mkdtempSync, readdirSync, readFileSync, rmSync } from 'node:fs';
 import http from 'node:http';

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Measures what foxglovesink costs at OS1-128 and 10 scans/s, as a Markdown table of
-// docs/results/ecosystem.md; tests/benchmarks/ecosystem.sh runs it.
+// Measures the cost of foxglovesink for an OS1-128 at 10 scans/s, and prints a Markdown table of
+// docs/results/ecosystem.md. tests/benchmarks/ecosystem.sh runs this script.
 import { mkdtempSync, rmSync } from 'node:fs';
 import os from 'node:os';
 import path from 'node:path';

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Measures the page in a headless Chromium that draws by software, as Markdown tables of
-// docs/results/ecosystem.md. Usage: measure_page.mjs [way]; `way`: only the delay of a slice.
+// Measures the page in a headless Chromium without a graphics card, and prints Markdown tables of
+// docs/results/ecosystem.md.
+// Usage: measure_page.mjs [way]. With `way`, measures only the delay of a slice.
 import { mkdtempSync, readdirSync, readFileSync, rmSync } from 'node:fs';
 import os from 'node:os';
 import path from 'node:path';
@@ -8,9 +9,9 @@ import { audit } from './axe.mjs';
 import { CODERS, cpuOf, eachStream, head, row, SECONDS, start } from './measuring.mjs';
 import { freePort, openBrowser, openPage, Pipeline, sleep, until } from './support.mjs';
 
-const SETTLED_MS = 3000; // until compilers and other work at the start have ended
+const SETTLED_MS = 3000; // the time after which work of the start, such as compiling, has ended
 const CLOUDS = ['lidar.Slice', 'foxglove.PointCloud', 'foxglove.CompressedPointCloud'];
-const LONG_MS = 50; // browsers report tasks from this duration on
+const LONG_MS = 50; // browsers report only tasks that are at least as long
 
 const quantile = (share, values) => values.sort((a, b) => a - b)[Math.floor(share * values.length)] ?? NaN;
 const ms = (seconds) => (1000 * seconds).toFixed(0);
@@ -29,7 +30,7 @@ function browserCpu(thread) {
     try {
       return /^\d+$/.test(pid) && readFileSync(`/proc/${pid}/cmdline`, 'utf8').includes('--type=renderer');
     } catch {
-      return false; // it has ended
+      return false; // the process has ended
     }
   };
   return readdirSync('/proc').filter(isOurs).reduce((sum, pid) => sum + cpuOf(pid, thread), 0);
@@ -51,7 +52,7 @@ function observe(turns) {
     }
   }).observe({ type: 'longtask' });
   const now = () => (performance.timeOrigin + performance.now()) / 1000;
-  const received = new Map(); // by the time at which it was sent
+  const received = new Map(); // the time of receipt of each slice, by the time of sending
   const add = slices.add.bind(slices);
   slices.add = (channel, bytes, captured) => {
     const sent = new DataView(bytes.buffer, bytes.byteOffset).getBigUint64(16, true);
@@ -66,7 +67,8 @@ function observe(turns) {
     received.delete(sent);
     return points(about, header, ...rest);
   };
-  // A picture is on the screen when the next frame begins.
+  // A picture is visible when the next frame begins, so slices get their time `drawn` in the next
+  // call.
   let drawn = [];
   const draw = scene.draw.bind(scene);
   scene.draw = () => {

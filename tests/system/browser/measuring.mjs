@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Common to measure.mjs and measure_page.mjs: scans of an OS1-128 from files, and Markdown.
+// Functions that measure.mjs and measure_page.mjs share: they make scans of an OS1-128 from files,
+// and Markdown.
 import { execFileSync } from 'node:child_process';
 import { readdirSync, readFileSync } from 'node:fs';
 import path from 'node:path';
@@ -8,8 +9,8 @@ import { freePort, Pipeline } from './support.mjs';
 export const SECONDS = Number(process.env.WAIT_S ?? 20);
 export const CODERS = { raw: '', 'Draco at 2 cm': '! dracoenc geometry=xyz max-error=0.02' };
 const WIDTHS = [1024, 2048];
-const TICKS = 100; // a second, in /proc
-const SCANS = 10; // in a loop
+const TICKS = 100; // clock ticks per second, the unit of CPU time in /proc
+const SCANS = 10; // the number of scans, which are repeated
 const FIELDS = 'x:F32:0,y:F32:4,z:F32:8,intensity:F32:12,range:U32:16';
 
 /** The CPU time so far [s] of a process's threads whose name begins with `name`. */

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The page in a real browser: what a user sees and does, also if the server ends, refuses or waits
-// for a stalled client.
+// Tests the page in a real browser: what a user sees and does, also when the server ends, refuses a
+// client, or waits for a stalled client.
 import assert from 'node:assert/strict';
 import { mkdtempSync, rmSync } from 'node:fs';
 import os from 'node:os';
@@ -45,7 +45,8 @@ function look(page) {
   });
 }
 
-// Draws by WebGL, as with a graphics card, and by raster.js, as without.
+// Draws with WebGL, which a computer with a graphics card uses, and with raster.js, which is used
+// without one.
 for (const by of ['webgl', 'raster'])
 test(`points are drawn by ${by} and move, in every colour`, limits, async () => {
   const port = await freePort();
@@ -171,7 +172,7 @@ test('slices go to the page as the robot coded them', limits, async () => {
   await until('points', async () => (await look(page)).drawn > 1000);
   const read = () => page.evaluate(() => ({ ...window.lidarPage.received, age: window.lidarPage.age }));
   const before = (await read())['lidar.Slice'].messages;
-  // The server sends on only if scans are acknowledged.
+  // The server sends these scans only if the page acknowledges the previous ones.
   await until('ten more scans', async () => (await read())['lidar.Slice'].messages > before + 80);
   const now = await read();
   assert.equal(now['foxglove.PointCloud'], undefined, 'decoded clouds come, too');
@@ -248,10 +249,11 @@ test('two viewers see it; a stalled one holds up neither them nor the pipeline',
   await got;
   stalled._socket.pause();
   const { clouds, messages_dropped: dropped } = sink;
-  // 400 clouds of 40 kB are more than the kernel buffers for the stalled client.
+  // 400 clouds of 40 kB do not fit into the kernel's buffers for the stalled client.
   await until('its socket is full', () => sink.clouds > clouds + 400);
   assert.ok(sink.messages_dropped > dropped, 'nothing was dropped for it');
-  // The rate depends on the load of the machine, not on the stalled client: wait for a count.
+  // Waits for a number of clouds instead of checking a rate, because the rate depends on the load
+  // of the machine.
   const counts = async () => {
     const pages = [first, second].map(({ page }) =>
       page.evaluate(() => window.lidarPage.received['foxglove.PointCloud'].messages));
@@ -317,7 +319,7 @@ test('it fits a phone, follows the theme, and the keyboard reaches all of it', l
   await page.click('#panel');
   assert.ok((await covered()) < 0.2, `${await covered()} of the scene is covered`);
   await page.click('#panel');
-  await page.click('#pause'); // shows the timeline
+  await page.click('#pause'); // this shows the timeline
   assert.ok((await covered()) < 0.25, `${await covered()} of the scene is covered`);
   const heights = await page.$$eval('.always button, #timeline button', (all) => all.map((b) => b.getBoundingClientRect().height));
   await page.click('#pause');

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Parts of the page that need no browser.
+// Tests the parts of the page that need no browser.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { chooseChannels } from '../../../ext/web/page/src/channels.js';
@@ -36,7 +36,7 @@ test('a server that comes back brings poses of its own', () => {
   const x = (time) => poses.at('lidar', time).elements[12];
   assert.deepEqual([x(10), x(10.9), x(11.2)], [5, 0, 0]);
   poses.end();
-  poses.add(pose(3, 7, 0)); // a recording
+  poses.add(pose(3, 7, 0)); // an earlier time, as in a recording
   assert.equal(x(3), 7);
 });
 
@@ -49,7 +49,7 @@ test('the ellipse of a position has three standard deviations along each of its 
   };
   const most = (points, [x, y]) => Math.max(...points.map((p) => Math.abs(p[0] * x + p[1] * y)));
   const slope = Math.SQRT1_2;
-  // 4 m along the diagonal, 1 m across it
+  // The rectangle that is expected has 4 m along the diagonal and 1 m across it.
   const tilted = corners(8.5, 7.5, 8.5);
   assert.ok(Math.abs(most(tilted, [slope, slope]) - 12) < 0.05);
   assert.ok(Math.abs(most(tilted, [slope, -slope]) - 3) < 0.05);
@@ -115,7 +115,7 @@ test('any time of a history is shown, by what it needs', async () => {
   const player = new Player(history, () => decoders[decoders.push(new Decoder(slices)) - 1], () => {});
   const first = await player.show(slices[17].captured + 0.01);
   assert.deepEqual([first.jumped, shown(first), first.next], [true, [14, 15, 16, 17], slices[18].captured]);
-  assert.equal(decoders[0].decoded, 8); // from 10 on
+  assert.equal(decoders[0].decoded, 8); // slices 10 to 17
   const on = await player.show(slices[19].captured);
   assert.deepEqual([on.jumped, shown(on)], [false, [18, 19]]);
   const back = await player.show(slices[3].captured);
@@ -205,7 +205,7 @@ test('recordings of two sensors are one, and wait for each other', () => {
   assert.deepEqual([replay.reach, shown, replay.last], [152, [150], Infinity]);
   replay.status(left, { number: 1, from: 100, to: 200, damaged: 0, end: 152 });
   assert.equal(replay.last, 152);
-  // Slices that will not be shown are acknowledged, too.
+  // Slices are also acknowledged if they will not be shown.
   const rest = { op: 'drawn', id: 1, scan: 3, slice: 0 };
   replay.begin(160);
   assert.deepEqual(told.splice(0)[0], rest);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Foxglove's own client against foxglovesink: npm's @foxglove/ws-protocol gets the messages,
-// protobufjs reads them by the channels' schemas.
+// Tests foxglovesink with Foxglove's own client: the npm package @foxglove/ws-protocol receives the
+// messages, and protobufjs reads them with the schemas of the channels.
 import assert from 'node:assert/strict';
 import { createRequire } from 'node:module';
 import { test } from 'node:test';
@@ -10,7 +10,7 @@ import descriptor from 'protobufjs/ext/descriptor/index.js';
 import WebSocket from 'ws';
 import { freePort, Pipeline, until } from './support.mjs';
 
-// These packages are CommonJS: Node cannot import their names.
+// These packages are CommonJS modules, and Node.js cannot import single names from them.
 const require = createRequire(import.meta.url);
 const { NumericType } = require('@foxglove/schemas');
 const jsonSchemas = require('@foxglove/schemas/jsonschema');

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Makes the picture of the demo for README and foxglovesink's documentation. SHOTS=3 adds the light
-// theme and a phone. Usage: node tests/system/browser/screenshot.mjs FOLDER
+// Makes the picture of the demo for the README and for the documentation of foxglovesink. With
+// SHOTS=3, makes pictures of the light theme and of a phone, too.
+// Usage: node tests/system/browser/screenshot.mjs FOLDER
 import { spawn } from 'node:child_process';
 import { mkdtempSync, rmSync } from 'node:fs';
 import os from 'node:os';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Slices that the page decodes itself, and its acknowledgements to the server.
+// Tests how the page decodes slices, and how it acknowledges them to the server.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { mkdtempSync, readdirSync, readFileSync, rmSync } from 'node:fs';
@@ -18,7 +18,8 @@ before(async () => {
   recorded = recordSlices();
   browser = await openBrowser();
 }, limits);
-const closings = new Set(); // for tests that failed: open servers would keep Node running
+// Functions that close the servers of tests that failed. An open server would keep Node.js running.
+const closings = new Set();
 after(async () => {
   await browser?.close();
   for (const stop of closings) await stop();
@@ -62,7 +63,8 @@ test('a whole scan stays, however few come', limits, async () => {
   for (let i = 0; i < 8; ++i) server.sendSlice(2, recorded, i);
   await until('a scan', () => acknowledged(server)?.slice === 7);
   const whole = await points(page);
-  // The next scan is four later; its first half replaces that half of the old one.
+  // The next scan that arrives is four scans later. Its first half replaces the first half of the
+  // old scan.
   for (let i = 32; i < 36; ++i) server.sendSlice(2, recorded, i);
   await until('half a scan', () => acknowledged(server)?.scan === 4 && acknowledged(server)?.slice === 3);
   const mixed = await points(page);
@@ -123,7 +125,7 @@ test('the page goes back into what it got, and returns to live', limits, async (
   const { server, page, complaints, close } = await open([sliceChannel(2, '/points', recorded)]);
   await until('a subscription', () => server.subscribed.has(2));
   assert.ok(!(await page.isVisible('#timeline')));
-  const slices = 400; // 5 s
+  const slices = 400; // 5 s of slices
   for (let i = 0; i < slices; ++i) server.sendSlice(2, recorded, i, (slices - i) * 12.5);
   await until('a timeline', () => page.isVisible('#timeline'));
   await until('all', () => acknowledged(server)?.scan === 49 && acknowledged(server)?.slice === 7);
@@ -136,7 +138,7 @@ test('the page goes back into what it got, and returns to live', limits, async (
   assert.match(await page.textContent('#timeline output'), /^3\.0 s ago/);
   await page.fill('#timeline input', '-4');
   await until('an earlier one', async () => Math.abs((await shownAt(page)) - end + 4) < 0.2);
-  // Playing continues, while live slices come and are acknowledged.
+  // The recording continues to play. Live slices that arrive meanwhile are acknowledged.
   await page.click('#pause');
   await until('a subscription', () => server.subscribed.has(2));
   for (let i = 400; i < 408; ++i) server.sendSlice(2, recorded, i);
@@ -191,7 +193,7 @@ test('the page goes back into a recording of the server, and returns to live at 
   play(0, 80);
   await shows(page, time - 0.02);
   assert.ok(Math.abs((await points(page)) - whole) < 0.2 * whole, 'the scan is not whole');
-  // Live slices, and those of another replay, are not shown.
+  // Live slices and slices of another replay are not shown.
   server.sendSlice(2, recorded, 9);
   server.sendSlice(2, recorded, 79, Date.now() - 1000 * time - 900, number + 1);
   await shows(page, time + 0.6);
@@ -215,12 +217,12 @@ test('a recording is held, stepped through by keys and buttons, and no more of i
   await page.keyboard.press('PageDown');
   const first = await until('a request', replay);
   assert.ok(server.subscribed.has(2), 'without a subscription');
-  play(0, 240); // 3 s
+  play(0, 240); // 3 s of slices
   await shows(page, first.time - 0.02);
   assert.ok((await shownAt(page)) <= first.time);
   await says(page, 'Recorded, paused');
   const { scan, slice } = await until('acknowledgements', () => acknowledged(server));
-  const due = 16 + 80; // 0.2 s before, and a second ahead
+  const due = 16 + 80; // slices from 0.2 s before the requested time to 1 s after it
   assert.ok(scan * 8 + slice >= due - 2 && scan * 8 + slice <= due + 1, `slice ${scan * 8 + slice} is acknowledged`);
   const another = () => until('another request', () => replay().number !== first.number && replay());
   await page.keyboard.press('ArrowRight');
@@ -260,7 +262,7 @@ test('a recording that cannot be read is told, and what the page has itself is t
   const { server, page, complaints, close, describe } = await openRecorded({ options: { locale: 'de-DE' } });
   describe({ from: 0, to: 0 });
   await until('words', async () => /nicht lesbar/.test(await page.textContent('#recording')));
-  const slices = 160; // 2 s
+  const slices = 160; // 2 s of slices
   for (let i = 0; i < slices; ++i) server.sendSlice(2, recorded, i, (slices - i) * 12.5);
   await until('all', () => acknowledged(server)?.scan === 19 && acknowledged(server)?.slice === 7);
   const end = await shownAt(page);
@@ -350,7 +352,7 @@ test('a replay has the poses that the recording has', limits, async () => {
   await page.fill('#timeline input', '-600');
   const { number, time } = await until('a request', replay);
   server.sendPose(2, [7, 0, 0], 1000 * time - 200, number);
-  server.sendPose(2, [9, 0, 0], 1000 * time - 200, number + 1); // of another replay
+  server.sendPose(2, [9, 0, 0], 1000 * time - 200, number + 1); // a pose of another replay
   play(0, 80);
   await shows(page, time - 0.02);
   await until('the place', async () => (await page.evaluate(() => window.lidarPage.scene.sensor.x)) === 7);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Starts pipelines with a foxglovesink, and Debian's Chromium with their page.
+// Starts pipelines with a foxglovesink, and opens their page in Debian's Chromium.
 import { spawn } from 'node:child_process';
 import net from 'node:net';
 import { chromium } from 'playwright-core';

@@ -26,7 +26,7 @@ using std::chrono::seconds;
 
 constexpr std::uint64_t kMaxGrowth = std::uint64_t{8} << 20;  // [bytes] since the warm-up
 constexpr unsigned kWarmUp = 5;                               // minutes
-constexpr std::uint64_t kInFlight = 4;                        // slices that may be on their way during a check
+constexpr std::uint64_t kInFlight = 4;  // slices that may be on their way during a check
 
 struct Options {
   unsigned minutes = 0;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Reads a recording with @mcap/core and Foxglove's decoders of ROS 2 messages, and checks checksums.
+// Reads a recording with @mcap/core and with Foxglove's decoders of ROS 2 messages, and checks the
+// checksums.
 // Usage: node check.mjs FILE TOPIC=COUNT ...
 import assert from "node:assert";
 import { open } from "node:fs/promises";
@@ -29,7 +30,7 @@ const reader = await McapIndexedReader.Initialize({ readable, decompressHandlers
 assert.equal(reader.header.profile, "ros2");
 assert.ok(reader.statistics.chunkCount > 0);
 
-// Messages are decoded by the definition in the file.
+// Decodes messages by the definition that is in the file.
 const decoders = new Map();
 function decode(channel, data) {
   if (!decoders.has(channel.id)) {
@@ -91,13 +92,13 @@ for (const pair of expected) {
   assert.equal(counts[topic], Number(count), topic);
 }
 
-// Reading from a time on uses the message indexes.
+// The reader uses the message indexes to find messages from a start time on.
 const middle = (reader.statistics.messageStartTime + reader.statistics.messageEndTime) / 2n;
 for await (const message of reader.readMessages({ startTime: middle })) {
   assert.ok(message.logTime >= middle);
 }
 
-// Reading from front to end checks the checksum of the data section.
+// A reader that reads the whole file in order checks the checksum of the data section.
 const stream = new McapStreamReader({ decompressHandlers, validateCrcs: true });
 stream.append(await readable.read(0n, size));
 let streamed = 0n;
