@@ -93,7 +93,8 @@ lacks() {
 
 rows=$output/table
 printf '%-13s %-8s %8s  %s\n' step result seconds 'last line' >"$rows"
-row() { printf '%-13s %-8s %8s  %s\n' "$@" | tee -a "$rows"; } # STEP RESULT SECONDS LAST_LINE
+# row STEP RESULT SECONDS LAST_LINE: prints a row of the table, and adds it to the file.
+row() { printf '%-13s %-8s %8s  %s\n' "$@" | tee -a "$rows"; }
 # take NAME COMMAND: runs a step, and adds a row with its result to the table.
 take() {
   local began=$SECONDS result=ok

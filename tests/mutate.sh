@@ -54,7 +54,9 @@ fi
 mkdir -p "$folder" || exit 2
 folder=$(cd "$folder" && pwd)
 tree=$folder/tree
-build=$tree/build  # as in a usual tree, so that a compiler cache knows what it compiled there
+# The build folder has the same place in the tree as in a usual build, so that a compiler cache
+# finds what it has compiled there.
+build=$tree/build
 log=$folder/log
 
 # Copies the tree. Files that have not changed keep their modification times, so that only changed

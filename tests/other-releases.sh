@@ -81,7 +81,8 @@ install_for_arm64() {
   local package foreign=()
   for package in "${packages[@]}"; do
     case $package in
-      libsoup-3.0-dev) ;; # needs gobject-introspection of arm64, which needs the Python of arm64
+      # libsoup needs gobject-introspection of arm64, which needs the Python of arm64.
+      libsoup-3.0-dev) ;;
       nlohmann-json3-dev | libcli11-dev | libeigen3-dev | robin-map-dev) foreign+=("$package") ;;
       lib*-dev | *-dev | gstreamer1.0-plugins-*) foreign+=("$package:arm64") ;;
     esac

@@ -51,7 +51,7 @@ while [ $# -gt 0 ]; do
   shift
 done
 
-sanitized="core elements fuzz"  # suites
+sanitized="core elements fuzz"  # the suites that run under sanitizers
 sanitized_job=
 sanitized_result=
 passed=0
@@ -115,7 +115,8 @@ build() {
 # optimized.
 build_sanitized() {
   local cache
-  cache=$(command -v ccache)  # meson does not use ccache if a compiler is named
+  # ccache must be named, because meson does not use it by itself if a compiler is named.
+  cache=$(command -v ccache)
   CC="$cache clang" CXX="$cache clang++" build "$root/build-asan" "$sanitized" -Db_sanitize=address,undefined -Db_lundef=false -Doptimization=0 \
     -Dbenchmarks=disabled
 }

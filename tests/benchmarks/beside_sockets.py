@@ -25,10 +25,11 @@ CASES = ["cubic_fifo_15ms_8M", "cubic_fifo_5ms_20M", "cubic_fifo_10ms_20M", "cub
          "cubic_fifo_10ms_50M", "cubic_fifo_20ms_20M", "cubic_fifo_100ms_20M", "cubic_pi2_20M", "prague_ramp_4M",
          "prague_ramp_8M", "prague_ramp_20M", "prague_step_1ms_20M", "prague_step_3ms_20M", "prague_dualpi2_20M"]
 RTT_MS = 40
-SHORTEST_FIFO = 10 * 1500  # bytes
+SHORTEST_FIFO = 10 * 1500  # the smallest size of a FIFO [bytes]
 PEER_CASES = ["udpprague_ramp_4M", "udpprague_ramp_8M", "udpprague_ramp_20M", "udpprague_step_1ms_20M",
               "udpprague_dualpi2_20M", "gcc_fifo_100ms_8M", "gcc_fifo_100ms_20M", "gcc_dualpi2_20M"]
-START_S = 1.0  # the other flow starts this much later than ours
+# The time by which the other flow starts later than the flow of this project [s].
+START_S = 1.0
 SETTLE_S = 10.0
 LINK_PORT, RX_PORT = 45204, 45304
 
@@ -45,7 +46,8 @@ def parse_case(name):
         options += ["--aqm", parts[1]]
         if parts[1] == "step":
             options += ["--aqm-high", parts[2].removesuffix("ms")]
-        if parts[1] == "pi2":  # as most AQMs in use: without L4S
+        # PI2 is used without L4S, as by most AQMs that are deployed.
+        if parts[1] == "pi2":
             options.append("--aqm-classic")
     return kind, options, rate * 1e6
 

@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
 # Runs all simulated cases of the controller for one commit, and prints which goals it meets and
-# misses. With --ablation, prints how much worse the results are without each part of the
-# controller.
+# misses. With --ablation, prints how the results change without each part of the controller.
 # usage: controller.sh BUILD [--ablation] [options of controller-goals]
 set -eu
 build=$1

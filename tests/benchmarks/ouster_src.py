@@ -15,7 +15,7 @@ import threading
 import time
 import urllib.request
 
-PORT = 17502  # for LiDAR packets; IMU packets use the next port
+PORT = 17502  # the port for LiDAR packets; IMU packets use the next port
 
 
 class Sensor:
@@ -106,7 +106,7 @@ def load(tool, seconds, model, mode, speeds, loss):
             cpu, elapsed = receiver.cpu_seconds() - cpu, time.monotonic() - start
             sent = sensor.request("/replay/stats")["sent"] - before["sent"]
             sensor.request("/replay/faults", {"loss": 0})
-            time.sleep(2.5)  # losses are reported once a second
+            time.sleep(2.5)  # losses are reported once per second
             after = sensor.request("/replay/stats")
             receiver.stop()
             sensor.stop()

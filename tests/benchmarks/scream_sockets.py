@@ -46,7 +46,7 @@ for _name in [n for n in SCENARIOS if n.startswith("frames_") and not n.endswith
     _text, _link, _ecn, _, _seconds = SCENARIOS[_name]
     SCENARIOS[_name.replace("frames", "slices")] = (_text + ", slices", _link, _ecn, SLICES_FPS, _seconds)
 SETTLE_S = 5.0
-LINK_PORT, RX_PORT = 45004, 45104  # of the first flow, with --port-offset 0
+LINK_PORT, RX_PORT = 45004, 45104  # the ports of the first flow with --port-offset 0
 
 
 def percentile(values, p):

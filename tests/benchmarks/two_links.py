@@ -25,7 +25,8 @@ import build_tree  # noqa: E402
 from ports import free_port  # noqa: E402
 
 MAX_AGE_NS = 200_000_000
-SETTLE_S = 3.0  # of a run: scans that start within it do not count
+# The time at the start of a run in which scans do not count [s].
+SETTLE_S = 3.0
 CASES = {"first alone": (0,), "second alone": (1,), "both": (0, 1)}
 HEAD = ("| links | scans | in time [%] | bound [%] | p50 [ms] | p95, bound [ms] | p99, bound [ms] | Mbit/s | sent twice [%] "
         "| saved packets |\n|---|---|---|---|---|---|---|---|---|---|")
@@ -192,7 +193,7 @@ def main():
                 stream(args, of, CASES[case], files)
                 runs.append(judge(of))
             runs.sort(key=lambda r: r["in_time"] / max(r["scans"], 1))
-            r = runs[len(runs) // 2]  # the middle one
+            r = runs[len(runs) // 2]  # the median run
             share, p95, p99 = bound(args, CASES[case], files, r["rate"])
             all_shares = ", ".join(f"{100 * x['in_time'] / x['scans']:.1f}" for x in runs)
             print(f"| {case} | {r['scans']} | {all_shares} | {share:.1f} | {percentile(r['ages'], .5):.0f} "

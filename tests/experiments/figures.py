@@ -13,8 +13,8 @@ import math
 import sys
 
 SAMPLE_S = 0.005
-PERIOD_S = 0.1  # of a scan
-WARM_UP_S = 3  # s, until the rate has settled
+PERIOD_S = 0.1  # the duration of a scan [s]
+WARM_UP_S = 3  # the time until the rate has settled [s]
 
 
 def trajectory(path):

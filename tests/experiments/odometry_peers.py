@@ -32,7 +32,7 @@ FAULTS = {
     "half the beams": ["--every-beam", "2"],
     "1 s gap": ["--gap", "1"],
 }
-START = 20  # scans
+START = 20  # the number of scans that count as the start
 HEAD = ["ATE [m]", "drift [%]", "RPE [m]", "CPU of a scan [ms]", "memory [MB]", "start lost"]
 
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Runs every rule of this folder over the tree. Needs no build. Git hooks call this script.
+# Runs every rule of this folder over the tree, without a build. Git hooks can call this script.
 set -uo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)

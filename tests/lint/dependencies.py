@@ -52,7 +52,7 @@ GROUPS = {
     "gst": ("gst/lidar/", "gst/common/"),
     "ext": "ext/",
 }
-SYSTEM = ("POSIX", "threads")  # GStreamer gives both to its elements
+SYSTEM = ("POSIX", "threads")  # elements have both through GStreamer
 FREE = ("emmintrin.h", "immintrin.h", "arm_neon.h", "wasm_simd128.h", "limits.h")
 # Functions that src/ must not call. The check of includes does not find these calls. Programs may
 # call these functions.
@@ -61,7 +61,8 @@ WORLD = re.compile(
     r"|printf|fprintf|cout|cerr)\b"
 )
 OURS = ("src", "gst", "ext", "tests")
-PUBLIC = "gst/lidar/"  # installed headers name each other as their users do
+# Installed headers include each other in the same way as their users do.
+PUBLIC = "gst/lidar/"
 
 
 def cell_names(cell):
@@ -176,7 +177,8 @@ def check(root):
     for folder, (uses, _) in rows.items():
         if "*" not in folder and not (root / folder).is_dir():
             problems.append(f"docs/architecture.md: there is no folder {folder}")
-        for use in uses:  # an unused permission would let a later violation pass
+        # A permission that is not used is reported, because it would hide a later violation.
+        for use in uses:
             target = use if "/" in use else "src/" + use
             if use in GROUPS or "*" in folder:
                 continue

@@ -17,7 +17,7 @@ PATH = re.compile(r"(?<![\w/.<>{}*$-])(" + TOPS + r"/[\w./*<>{},@$-]*)")
 BUILT = re.compile(r"(?<![\w/.-])build(?:-asan|-tsan|-fuzz)?/(" + TOPS + r"/[\w./-]+)")
 FILE = re.compile(r"[\w-]+\.(?:md|h|cpp|sh|py)")
 PROGRAM = re.compile(r"(?:lidar|ouster|scream)-[a-z][a-z-]*(?![\w.=-])")
-OPEN = re.compile(r"[<>{}*$]")  # a pattern, not a name
+OPEN = re.compile(r"[<>{}*$]")  # characters of a pattern; such a text is not a path
 SOURCES = (".h", ".cpp", ".sh", ".py", ".build")
 
 

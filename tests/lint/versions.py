@@ -12,7 +12,8 @@ import sys
 import xml.etree.ElementTree
 
 GIRS = pathlib.Path("/usr/share/gir-1.0")
-LIBRARIES = {  # files, and where meson.build has the lower bound
+# For each library: its files, and the pattern of its lowest version in meson.build.
+LIBRARIES = {
     "GStreamer": (("Gst*.gir",), r"startswith\('gstreamer'\) \? '>= ([\d.]+)'"),
     "GLib": (("GLib-2.0.gir", "GObject-2.0.gir", "Gio-2.0.gir"), r": '>= (2\.[\d.]+)'"),
 }
@@ -37,7 +38,7 @@ def newer(girs, bound):
     def visit(element, since, name):
         own = element.get("version", "")
         if element.tag.endswith(("}namespace", "}repository")):
-            own = ""  # the version of the file format
+            own = ""  # this attribute is the version of the file format
         since = version(own) if re.fullmatch(r"\d+\.\d+(\.\d+)?", own) else since
         # An odd minor version is a development version. Its functions are first released in the
         # next even version.
@@ -60,7 +61,9 @@ class Guards:
     """Follows the conditions around a line: each says (library, version, whether it has that version)."""
 
     def __init__(self):
-        self.stack = []  # per #if: facts from branches that do not hold, and from the present branch
+        # For each open #if: the facts that follow because its earlier branches are not compiled,
+        # and the facts of its present branch.
+        self.stack = []
 
     def see(self, line):
         match = CONDITION.match(line)

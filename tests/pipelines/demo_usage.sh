@@ -36,7 +36,8 @@ expect 2 "lidarenc codes ranges" --geometry xyz --encoder lidarenc
 expect 2 "--start-bitrate must not be above --max-bitrate" --start-bitrate 9 --max-bitrate 8
 expect 1 "the sender ended early" --pcap "$folder/capture.pcap" --metadata "$folder/metadata.json"
 expect 0 "--duration" --help
-mkdir -p "$folder/out/packets2.csv/kept"  # so that the second link cannot write its packets
+# The second link cannot write its packets, because a folder has the name of the file.
+mkdir -p "$folder/out/packets2.csv/kept"
 expect 1 "packets2.csv" --links 2
 
 # Sends a signal to a receiver that has received the end of the stream, but still writes its clouds.

@@ -24,13 +24,13 @@ import time
 sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "support"))
 from ports import free_port  # noqa: E402
 
-PLAYING = b"Setting pipeline to PLAYING"  # what gst-launch-1.0 prints, except with -q
-ENDS = b"Got EOS from"  # what it prints before it ends by itself, except with -q
+PLAYING = b"Setting pipeline to PLAYING"  # gst-launch-1.0 prints this, except with -q
+ENDS = b"Got EOS from"  # gst-launch-1.0 prints this before it ends by itself
 QUIET_SECONDS, PLAY_SECONDS = 4, 1.5
 # The error that an element may post while a pipeline stops. Its source pad is deactivated before
 # its sink pad, so it may fail to push the first events of a stream.
 REFUSED_EVENT = re.compile(rb"ERROR: from element \S+ Internal data stream error\.(?:\n.*){2}\n.*reason error \(-5\)")
-PATIENCE = 180  # seconds, on a busy machine
+PATIENCE = 180  # the longest wait on a busy machine [s]
 AT_A_TIME = 4
 
 
@@ -74,7 +74,9 @@ def output_for_a_while(process, quiet, play_seconds):
         if not plays and PLAYING in output:
             plays = True
             until = time.monotonic() + play_seconds
-        if ENDS in output:  # gst-launch-1.0 drops its handler of SIGINT before it has freed all
+        # gst-launch-1.0 removes its handler of SIGINT before it has freed everything, so it is not
+        # interrupted any more.
+        if ENDS in output:
             until = time.monotonic() + PATIENCE
         if time.monotonic() > until:
             break

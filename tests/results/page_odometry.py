@@ -47,7 +47,7 @@ BUMPY = [
     ("field", 12, 3, 4),
     ("field", 15, 4, 4),
 ]
-STARTS = range(100, 140)  # seeds
+STARTS = range(100, 140)  # the seeds of the drives
 
 
 def slam(model, scene, columns, speed, seed, scans, *options):

@@ -19,7 +19,7 @@ def ours_and_draft(prefixes):
     ours = {
         case: of
         for case, of in controller.figures().items()
-        if case.startswith(prefixes) and not case.endswith("_ect1")  # A FIFO that drops marks nothing.
+        if case.startswith(prefixes) and not case.endswith("_ect1")  # there a FIFO marks no packets
     }
     draft = controller.figures("--draft", *ours)
     return [(case, of, draft[case]) for case, of in ours.items()]

@@ -17,7 +17,7 @@ def cpu():
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
         return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
-    common.run("gst-inspect-1.0", "lidartestsrc")  # fills the registry
+    common.run("gst-inspect-1.0", "lidartestsrc")  # makes the registry before the measurement
     body = []
     for model, mode in SENSORS:
         times = [max(seconds(model, mode, scene, 31) - seconds(model, mode, scene, 1), 0) for scene in SCENES]

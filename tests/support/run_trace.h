@@ -39,8 +39,8 @@ class RunTrace {
   RunTrace(const RunTrace&) = delete;
   RunTrace& operator=(const RunTrace&) = delete;
 
-  /// Records buffers and events that pass `pad`, too. `pad` is a pad beside the harness's sink pad.
-  /// Any thread may call this.
+  /// Records the buffers and events that pass `pad`, in addition to the pads that are already
+  /// watched. Any thread may call this function.
   void Watch(GstPad* pad) {
     // A probe for buffer lists is not needed: the watched pads accept no lists, so GStreamer passes
     // the buffers of a list one by one.

@@ -16,8 +16,10 @@ import servers
 import srtp
 import strangers
 
-AT_ONCE = 4  # attacks mostly wait
-AT_ONCE_SANITIZED = 2  # victims with sanitizers are slow
+# The number of attacks that run at the same time. They mostly wait.
+AT_ONCE = 4
+# The same number with sanitizers, which make the victims slow.
+AT_ONCE_SANITIZED = 2
 ATTACKS = media.ALL + strangers.ALL + feedback.ALL + srtp.ALL + servers.ALL
 
 
@@ -26,9 +28,10 @@ class Context:
     recording: ends.Recording
     other: ends.Recording
     random: random.Random
-    seconds: float  # of each attack
+    seconds: float  # the duration of each attack
     sanitized: bool
-    memory_factor: int  # of the bounds, for a sanitizer takes memory too
+    # The factor by which limits of memory are multiplied, because a sanitizer needs memory, too.
+    memory_factor: int
 
 
 def run(attack, context):

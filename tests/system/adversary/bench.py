@@ -6,9 +6,11 @@ import time
 
 import ends
 
-MOST_BITRATE = 20_000_000  # of a sender [bit/s]
-MOST_PATIENCE = 180  # seconds, on a busy machine
-MOST_GROWTH_KB = 96 * 1024  # the sum of the queues of docs/security.md
+MOST_BITRATE = 20_000_000  # the largest bitrate of a sender [bit/s]
+MOST_PATIENCE = 180  # the longest wait on a busy machine [s]
+# The largest growth of the victim's memory [kB]. It is the sum of the limits of all queues in
+# docs/security.md.
+MOST_GROWTH_KB = 96 * 1024
 
 
 class Bench:

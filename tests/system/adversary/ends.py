@@ -45,7 +45,7 @@ class Victim:
     """The program `victim` with a pipeline; the attribute `last` is its last report."""
 
     program = None  # set once by the main program
-    longest_stop = 0  # the longest of all closes [s]
+    longest_stop = 0  # the longest time that a victim needed to stop [s]
 
     def __init__(self, pipeline, **process):
         env = dict(os.environ)
@@ -77,7 +77,7 @@ class Victim:
         begin = time.monotonic()
         self.process.stdin.close()
         try:
-            code = self.process.wait(180)  # a busy machine takes long
+            code = self.process.wait(180)  # ends much sooner if the machine is not busy
             Victim.longest_stop = max(Victim.longest_stop, time.monotonic() - begin)
         except subprocess.TimeoutExpired:
             self.process.kill()
@@ -200,8 +200,9 @@ class HonestSender(threading.Thread):
         self._next_socket = None
         self.sequence = random.getrandbits(16)
         self.sent = 0
-        self.packets = []  # all that was sent
-        self.companions = []  # SSRCs of other media: a packet of each goes with every slice
+        self.packets = []  # all packets that were sent
+        # SSRCs of other media. Each slice is followed by a packet of each of them.
+        self.companions = []
         self.feedback_bytes = 0
         self.config_id = wire.config_id(recording.config)
         self._scan_number = random.getrandbits(32)
@@ -249,7 +250,7 @@ class HonestSender(threading.Thread):
         try:
             self.socket.sendto(packet, self.to)
         except ConnectionRefusedError:
-            pass  # there is no receiver yet, or no longer
+            pass  # the receiver has not started yet, or has ended
 
     def pause(self, paused=True):
         self._paused = paused
@@ -284,7 +285,7 @@ class Relay(threading.Thread):
         self.port = self.inside.getsockname()[1]
         self.to = (LOOPBACK, to_port)
         self.media = []
-        self.on_media = None  # called with each packet; returns the packets to forward
+        self.on_media = None  # a function that gets each packet and returns the packets to forward
         self.running = True
         self.start()
 
@@ -321,7 +322,7 @@ def record(seed, scans):
     """Records at least `scans` whole scans of a real sender, read by the rules of docs/wire-format.md."""
     receiver = HonestReceiver()
     victim = Victim(SENDER.format(port=receiver.port, seed=seed, options=""))
-    until = time.monotonic() + 300  # a busy machine takes long
+    until = time.monotonic() + 300  # much longer than needed, for a busy machine
     reader, read, whole = wire.Reader(), 0, []
     while time.monotonic() < until and len(whole) < 8 * scans:
         time.sleep(0.05)

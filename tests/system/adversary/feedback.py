@@ -110,9 +110,9 @@ def hostile_feedback(context):
         honest = bench.receiver.report(now)
         hostile = [
             mutate(rng, honest), rng.randbytes(rng.randrange(1, 200)),
-            wire.ccfb(9, [(ssrc, last + 20_000, [(True, 0, 0)] * 10)], now),  # never sent
+            wire.ccfb(9, [(ssrc, last + 20_000, [(True, 0, 0)] * 10)], now),  # packets never sent
             wire.ccfb(9, [(ssrc ^ 1, last, [(True, 3, 0)] * 10)], now),
-            wire.ccfb(9, [(ssrc, last - 9, [(True, 1, 0x1FFD)] * 10)], now),  # arrived before it was sent
+            wire.ccfb(9, [(ssrc, last - 9, [(True, 1, 0x1FFD)] * 10)], now),  # arrived before they were sent
             wire.ccfb(9, [(n, 0, [(True, 1, 0)]) for n in range(2000)], now),
             wire.ccfb(9, [(ssrc, 0, [(False, 0, 0)] * 16_000)], now),
             wire.ccfb(9, [], now - 1000), honest[:-4] + honest, wire.bye(ssrc),
@@ -140,22 +140,25 @@ def hostile_twcc(context):
     while time.monotonic() < until:
         now, last = time.time(), receiver.newest
         ticks = int(now / wire.TWCC_TICK) // 256
-        received, lost = 0x2000, 0x0000  # chunks: runs of small deltas, and of lost packets
+        received, lost = 0x2000, 0x0000  # run-length chunks: of small deltas, and of lost packets
         hostile = [
             mutate(rng, receiver.report(now)),
             wire.twcc_packet(last, 9, ticks, sent, [], rng.randbytes(rng.randrange(99))),
-            wire.twcc_packet(last + 20_000, 10, ticks, sent, [received | 10], bytes(10)),  # never sent
+            wire.twcc_packet(last + 20_000, 10, ticks, sent, [received | 10], bytes(10)),  # packets never sent
             wire.twcc_packet(last - 9, 10, ticks, sent, [received | 10], bytes(3)),  # deltas are missing
-            wire.twcc_packet(last - 9, 10, ticks - 10**6, sent, [received | 10], bytes(10)),  # arrived long ago
-            wire.twcc_packet(last - 9, 10, 0xFF_FFFF, sent, [0x4000 | 10], b"\x7f\xff" * 10),  # arrives long from now
-            wire.twcc_packet(last - 9, 10, ticks, sent, [0x4000 | 10], b"\x80\x00" * 10),  # each before its predecessor
-            wire.twcc_packet(last - 9, 10, ticks, sent, [0x6000 | 10], bytes(40)),  # a status that does not exist
+            # This report says that packets arrived long ago. The next one says that they will
+            # arrive in the distant future.
+            wire.twcc_packet(last - 9, 10, ticks - 10**6, sent, [received | 10], bytes(10)),
+            wire.twcc_packet(last - 9, 10, 0xFF_FFFF, sent, [0x4000 | 10], b"\x7f\xff" * 10),
+            wire.twcc_packet(last - 9, 10, ticks, sent, [0x4000 | 10], b"\x80\x00" * 10),  # each earlier than the last
+            wire.twcc_packet(last - 9, 10, ticks, sent, [0x6000 | 10], bytes(40)),  # an invalid status symbol
             wire.twcc_packet(last, 0xFFFF, ticks, sent, [received | 0x1FFF] * 8, bytes(0x1FFF)),
             wire.twcc_packet(last - 9, 0, ticks, sent, [received | 10], bytes(10)),
             wire.twcc_packet(last - 9, 10, ticks, sent, [lost | 0] * 300 + [received | 10], bytes(10)),
             wire.twcc_packet(last - 9, 10, ticks, sent, [received | 10], bytes(10), media_ssrc=sent),
         ]
-        if rng.random() < 0.02:  # the session needs 30 ms for it
+        # This report is sent rarely, because the session needs 30 ms for it.
+        if rng.random() < 0.02:
             hostile.append(wire.twcc_packet(0, most, ticks, sent, [lost | 0x1FFF] * 8, b""))
         for report in hostile:
             bench.stranger.sendto(report, receiver.rtcp_to)

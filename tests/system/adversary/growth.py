@@ -25,12 +25,14 @@ import ends
 import nats
 
 COUNTS = (1_000, 8_000, 65_000)
-BOMBS = 600  # reading them takes longer than the victim waits for its state
-MOST_STOP = 1  # s
+# The number of chunks in a recording that expand to 128 MiB each. To read them takes longer than
+# the time for which the victim waits for its state.
+BOMBS = 600
+MOST_STOP = 1  # the longest time to stop [s]
 SLICES = "application/x-lidar-slice, alignment=(string)slice, number=(int)"
 RECORDING = "mcapsrc name=src location={path} ! fakesink name=out"
 SUBJECT = "fleet.r7.lidar.front"
-PATIENCE = 300  # s
+PATIENCE = 300  # the longest wait [s]
 
 
 class Process:
@@ -74,7 +76,8 @@ def connections(args, count, folder):
     begin, silent = edge.cpu(), collections.deque()
     for _ in range(count):
         silent.append(socket.create_connection((ends.LOOPBACK, port)))
-        if len(silent) > 40:  # a connection that made room for a newer one
+        # The server closes the oldest silent connection to make room for a newer one.
+        if len(silent) > 40:
             oldest = silent.popleft()
             oldest.settimeout(PATIENCE)
             assert oldest.recv(1) == b"", "a silent connection got an answer"
@@ -234,7 +237,8 @@ def main():
                               "memory_mb": round(memory), "told": float(told), "stop_s": round(stop, 2)}), flush=True)
             failed |= stop > MOST_STOP
         least, most = min(used), max(used)
-        failed |= used[most] > 2 * most / least * max(used[least], 0.05)  # ticks of 10 ms are coarse
+        # A short CPU time counts as 0.05 s, because it is measured in ticks of 10 ms.
+        failed |= used[most] > 2 * most / least * max(used[least], 0.05)
     raise SystemExit(failed)
 
 

@@ -25,7 +25,8 @@ def another_writer(context):
             sender.sent += 1
         payloads = [wire.config_unit(context.recording.config)] if scan % 5 == 0 else []
         marks = [False] * len(payloads)
-        if scan % 4 == 3:  # the scan's other slices are announced as skipped
+        # The last slice of these scans announces the other slices as skipped.
+        if scan % 4 == 3:
             parts = parts[:2] + [dataclasses.replace(parts[-1], skipped=(1 << (len(parts) - 3)) - 1)]
         if scan % 4 == 2:
             small = [dataclasses.replace(p, count=len(parts)) for p in parts]
@@ -146,7 +147,8 @@ def table_version():
     return int(re.search(r"kTableVersion = (\d+)", source.read_text(encoding="utf-8"))[1])
 
 
-DEAR_BEAMS, DEAR_COLUMNS = 64, 300  # as many pixels as the mixing coder accepts for a payload of 60 bytes
+# The largest number of pixels that the mixing coder accepts for a payload of 60 bytes.
+DEAR_BEAMS, DEAR_COLUMNS = 64, 300
 DEAR_CONFIG = wire.build_config(b"x:F32:0,y:F32:4,z:F32:8,range:U32:12", wire.sensor_model(DEAR_BEAMS, DEAR_COLUMNS))
 
 

@@ -30,7 +30,7 @@ class Client:
         host, port = url.removeprefix("nats://").split(":")
         self.socket = socket.create_connection((host, int(port)))
         self.file = self.socket.makefile("rb")
-        self.file.readline()  # INFO
+        self.file.readline()  # skips the line INFO of the server
         self.socket.sendall(b'CONNECT {"verbose":false}\r\n')
 
     def publish(self, subject, data, reply=""):

@@ -94,7 +94,7 @@ class Server(threading.Thread):
                 while connection.recv(65536):
                     pass
             except OSError:
-                pass  # the client has left
+                pass  # the client has closed the connection
 
     def close(self):
         self.listener.close()

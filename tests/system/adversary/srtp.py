@@ -22,7 +22,8 @@ def path_with_key(context):
     bench.before = bench.receiver.last
     bench.expect_flow(context.seconds, counts=lambda: (sender.ask()["pay"]["slices-sent"], bench.receiver.ask()["clouds"]))
     last = bench.receiver.ask()
-    sent = sender.ask()["pay"]["slices-sent"]  # asked after the receiver: no cloud is of a later slice
+    # The sender is asked after the receiver, so each cloud belongs to a slice that is counted here.
+    sent = sender.ask()["pay"]["slices-sent"]
     assert last["clouds"] <= sent, f"{last['clouds']} clouds of {sent:.0f} slices: a copy was shown"
     assert last["depay"]["slices-damaged"] == 0, last["depay"]
     refused = last["net"]["srtp-refused"]

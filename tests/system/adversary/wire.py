@@ -6,7 +6,7 @@ import zlib
 
 CONFIG, SLICE, SLICE_AFTER_SKIPPED = 0, 2, 3
 WHOLE, AGGREGATE, FIRST, MIDDLE, LAST = range(5)
-NTP_EPOCH = 2_208_988_800  # seconds from 1900 to 1970
+NTP_EPOCH = 2_208_988_800  # the seconds from 1900 to 1970
 PAYLOAD_TYPE = 96
 
 
@@ -20,8 +20,8 @@ class Slice:
     scan_id: int = 0
     first_column: int = 0
     duration: int = 0xFFFF_FFFF
-    capture: int = 0  # NTP
-    skipped: int = 0  # mask
+    capture: int = 0  # as an NTP timestamp
+    skipped: int = 0  # a mask of slices
 
     @property
     def unit(self):
@@ -126,9 +126,11 @@ class Reader:
     """Puts the units of one stream together again, and refuses all that the format does not allow."""
 
     def __init__(self):
-        self.configs = {}  # id: bytes
+        self.configs = {}  # the bytes of each configuration, by its id
         self.slices = []
-        self.partial = None  # of a slice in fragments: the slice, its CRC and length, from the first one
+        # For a slice in fragments: the slice so far, and its CRC and length, which the first
+        # fragment contains.
+        self.partial = None
         self.config_parts = None
         self.expected = None
 
@@ -213,7 +215,7 @@ def transport_number(packet, extension_id):
     return None
 
 
-TWCC_TICK = 1 / 4000  # seconds; a reference time is 256 of them
+TWCC_TICK = 1 / 4000  # [s]; a reference time has a unit of 256 ticks
 
 
 def twcc_packet(base, count, reference, number, chunks, deltas, media_ssrc=0):

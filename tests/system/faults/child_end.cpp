@@ -81,9 +81,8 @@ milliseconds ChildEnd::CpuTime() const {
 std::uint64_t ChildEnd::PeakMemory() const {
   const std::string status = Proc("status");
   const auto at = status.find("VmHWM:");
-  return at == std::string::npos ? UINT64_MAX
-                                 // The value in the file is in kB.
-                                 : std::stoull(status.substr(at + 6)) * 1'024;
+  // The value in the file is in kB.
+  return at == std::string::npos ? UINT64_MAX : std::stoull(status.substr(at + 6)) * 1'024;
 }
 
 }  // namespace lidar::test

@@ -20,7 +20,8 @@ import ends  # noqa: E402
 from machine import Skip, cpu_group, small_disk  # noqa: E402
 
 AT_ONCE = 3
-PATIENCE = 30  # seconds for what takes a moment on an idle machine
+# The longest wait [s] for something that takes a moment on an idle machine.
+PATIENCE = 30
 
 
 def comes_true(condition):
@@ -226,7 +227,7 @@ def few_files(options):
                 run = subprocess.run(
                     [ends.Victim.program, pipeline.format(data=data, folder=folder)], input="report\n", text=True,
                     capture_output=True, timeout=60, check=False,
-                    env=dict(os.environ, G_DEBUG=""),  # GStreamer 1.26 logs a critical there
+                    env=dict(os.environ, G_DEBUG=""),  # because GStreamer 1.26 logs a critical message
                     preexec_fn=lambda n=limit: resource.setrlimit(resource.RLIMIT_NOFILE, (n, n)))
                 said = run.stdout + run.stderr
                 assert run.returncode >= 0, f"{name} with {limit} files: signal {-run.returncode}: {said[-300:]}"
@@ -239,7 +240,8 @@ def few_files(options):
     return f"{told} runs said that there are too few files, {worked} worked"
 
 
-WRITERS = {  # elements; {file} is the file that they write
+# Elements that write a file. {file} is its path.
+WRITERS = {
     "lidarodometry": "lidartestsrc num-buffers=2000 model=os0-32 mode=512x10 ! lidarodometry trajectory={file} ! "
                      "fakesink async=false",
     "lidartestsrc": "lidartestsrc num-buffers=4000 model=os0-32 mode=512x10 slices-per-scan=64 "
@@ -306,7 +308,8 @@ def programs_on_a_full_disk(options):
     data = pathlib.Path(__file__).resolve().parents[2] / "data" / "ouster"
     capture = data / "OS-0-32-U1_v2.2.0_1024x10.pcap"
     rd = ["rd", str(capture), "--scans", "1", "--errors", "0.1", "--slices", "1"]
-    commands = {  # program, arguments, and a word of the error
+    # For each program: its arguments, and a word that its error message must contain.
+    commands = {
         "lidar-eval rd": (rd + ["--csv", "{file}"], "out"),
         "lidar-eval slam": (["slam", "synth:os0-32:street:512", "--scans", "3", "--out", "{file}"], "out"),
         "lidar-demo": (["--duration", "1", "--no-plots", "--output", "{file}"], ""),

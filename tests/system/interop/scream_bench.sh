@@ -11,7 +11,9 @@ port=$(python3 "$(dirname "${BASH_SOURCE[0]}")/../../support/ports.py" 2)
 folder=$(mktemp -d)
 trap 'kill $(jobs -p) 2>/dev/null || true; rm -rf "$folder"' EXIT
 
-check() {  # name, address, options of tx, options of rx, who gets the first SIGINT
+# check NAME ADDRESS TX_OPTIONS RX_OPTIONS END: runs a sender and a receiver. END (sender or
+# receiver) gets the first SIGINT.
+check() {
   local bench=$build/src/tools/scream-bench
   "$bench" rx --address "$2" --port "$port" --summary "$folder/rx.json" --log "$folder/rx.csv" $4 >"$folder/rx.txt" &
   local rx=$!
@@ -24,7 +26,7 @@ check() {  # name, address, options of tx, options of rx, who gets the first SIG
   sleep 4
   if [ "$5" = receiver ]; then kill -INT $rx; wait $rx; fi
   kill -INT $tx; wait $tx
-  if [ "$5" = sender ]; then wait $rx; fi  # ends with the sender
+  if [ "$5" = sender ]; then wait $rx; fi  # the receiver ends when the sender ends
   python3 - "$1" "$folder" <<'PYTHON'
 import csv, json, sys
 name, folder = sys.argv[1:]

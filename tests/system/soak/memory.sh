@@ -7,7 +7,9 @@ set -euo pipefail
 root=$(cd "$(dirname "$0")/../../.." && pwd)
 seconds=$((60 * ${1:-4}))
 [ $# = 0 ] || shift
-allowed=1024 # KiB: pages that the allocator had not touched before
+# The memory may grow by as many KiB, because the allocator may use pages that it has not used
+# before.
+allowed=1024
 work=$(mktemp -d)
 trap 'kill ${demo:-} 2>/dev/null || true; rm -rf "$work"' EXIT
 

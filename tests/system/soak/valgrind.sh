@@ -12,7 +12,8 @@ work=$(mktemp -d)
 trap 'kill ${receiver:-} 2>/dev/null || true; rm -rf "$work"' EXIT
 export G_SLICE=always-malloc GST_REGISTRY_FORK=no LIDAR_SRTP_KEY
 LIDAR_SRTP_KEY=$(printf '5a%.0s' {1..30})
-gst-inspect-1.0 screamsink >/dev/null # makes the registry without valgrind
+# Makes the registry without valgrind.
+gst-inspect-1.0 screamsink >/dev/null
 
 # check NAME PIPELINE...: runs the pipeline under valgrind, and writes the findings to $work/NAME.
 check() {

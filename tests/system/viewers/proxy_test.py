@@ -86,7 +86,7 @@ def try_proxy(make, folder, edge):
         viewer.run(3)
         assert viewer.slices, "slices"
         idle = Viewer(port, topic="/none", path=f"/robots/?token={TOKEN}", host="edge.example", tls=True)
-        idle.run(IDLE)  # an error where the connection ends
+        idle.run(IDLE)  # raises an error if the connection is closed
     finally:
         process.terminate()
         process.wait()

@@ -45,7 +45,7 @@ class Socket:
     def send(self, text, opcode=1):
         data = text.encode() if isinstance(text, str) else text
         size = bytes([0x80 | len(data)]) if len(data) < 126 else b"\xfe" + struct.pack(">H", len(data))
-        self.socket.sendall(bytes([0x80 | opcode]) + size + bytes(4) + data)  # a mask of zeros
+        self.socket.sendall(bytes([0x80 | opcode]) + size + bytes(4) + data)  # the mask is four zero bytes
 
     def frame(self):
         """Returns opcode and payload of the next frame, or None if it has not come completely."""
@@ -85,14 +85,14 @@ class Socket:
 class Viewer:
     """Acknowledges the newest slice each FRAME_SECONDS, as the page does, and notes the age of all."""
 
-    SUBSCRIPTION, FRAME = 9, 4  # id of the subscription; bytes of a frame's head
+    SUBSCRIPTION, FRAME = 9, 4  # the id of the subscription, and the size of a frame's header in bytes
 
     def __init__(self, port, topic="/points/slices", **kwargs):
         self.socket = Socket(port, **kwargs)
         self.topic = topic
         self.slices = []  # (scan, index, age [s], bytes, is recoded, number of the replay)
         self.channels = {}
-        self.recording = None  # the last message about it
+        self.recording = None  # the last message about the recording
 
     def run(self, seconds):
         until = time.monotonic() + seconds

@@ -18,7 +18,8 @@ trap 'stop; rm -rf "$folder"' EXIT
 
 command -v idlc >/dev/null || { echo "there is no idlc"; exit 77; }
 export CYCLONEDDS_URI='<General><Interfaces><NetworkInterface name="lo" multicast="true"/></Interfaces></General>'
-export ROS_DOMAIN_ID=$((10 + $$ % 90))  # ports below those that the kernel hands out
+# With such a domain the ports are below those that the kernel assigns by itself.
+export ROS_DOMAIN_ID=$((10 + $$ % 90))
 
 for types in described plain; do
   work=$folder/$types
