@@ -11,7 +11,7 @@ import { freePort, openBrowser, openPage, Pipeline, sleep, until } from './suppo
 
 const SETTLED_MS = 3000; // the time after which work of the start, such as compiling, has ended
 const CLOUDS = ['lidar.Slice', 'foxglove.PointCloud', 'foxglove.CompressedPointCloud'];
-const LONG_MS = 50; // browsers report only tasks that are at least as long
+const LONG_MS = 50; // browsers report only tasks of at least this duration
 
 const quantile = (share, values) => values.sort((a, b) => a - b)[Math.floor(share * values.length)] ?? NaN;
 const ms = (seconds) => (1000 * seconds).toFixed(0);

@@ -15,7 +15,8 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// The number of slices whose hashes are kept. A sender needs four minutes for as many slices.
+// The number of slices whose hashes are kept. The sensor needs about four minutes for this number
+// of slices.
 constexpr std::size_t kRemembered = 20'000;
 
 /// Calls `call(buffer)` for each buffer that passes the pad.

@@ -111,7 +111,7 @@ TEST(GapFaults, ACameraThatStopsInAGapLeavesTheLidarItsShareAndComesBack) {
   std::this_thread::sleep_for(seconds(3));
   EXPECT_GT(streams.frames(), 10U);
   streams.link.SetCapacity(Gaps(milliseconds(300), seconds(2)));
-  // After this time the link is within the first gap.
+  // The link is within the first gap after this time.
   std::this_thread::sleep_for(milliseconds(1'900));
   const auto camera = streams.sender.Child("camera");
   gst_element_set_state(camera.get(), GST_STATE_PAUSED);

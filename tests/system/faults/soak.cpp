@@ -170,8 +170,9 @@ class Soak {
       return "address changes";
     }
     const Fall fall = RandomFall(&random_);
-    // Counts can be compared only if the receiver gets all packets that the link sends. Packets
-    // that arrive too late count as lost there, and a flood may cause losses in the kernel.
+    // The counts can be compared only if the receiver counts all packets that passed the link.
+    // Packets that arrive too late count as lost at the receiver, and the kernel may drop packets
+    // during a flood.
     if (fall.fault.reorder_by > 0 || fall.fault.garbage_ratio > 0) comparable_ = false;
     link_.Set(fall.fault);
     std::this_thread::sleep_for(fall.length);
@@ -180,8 +181,7 @@ class Soak {
   }
 
   /// Returns true if the receiver got as many slices as passed the link whole. Also returns true if
-  /// slices may have been lost elsewhere during this minute, because the numbers cannot be compared
-  /// then.
+  /// this minute cannot be compared because slices may have been lost elsewhere.
   bool BooksAgree(const Accounts& a) {
     const std::uint64_t whole = link_.counts().slices_whole;
     const std::uint64_t passed = whole - last_whole_;

@@ -94,7 +94,7 @@ TEST(Srtp, FindsAStreamWhoseKeyItGetsLate) {
   path.Play();
   ASSERT_NE(path.receiver.NextCloud(seconds(5)), milliseconds::max());
   SetKey(path.sender.pipeline(), std::string(60, '6'));
-  // After as many packets the sequence numbers have wrapped, and the rollover counter of the new
+  // The sequence numbers have wrapped after these 150 packets, so the rollover counter of the new
   // key is 1.
   WaitForRefused(path, 150);
   SetKey(path.receiver.pipeline(), std::string(60, '6'));

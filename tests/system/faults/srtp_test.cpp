@@ -30,7 +30,7 @@ TEST_P(Srtp, CarriesTheStreamAndItsFeedbackHidden) {
   EXPECT_EQ(sender.Stat("net", "packets-lost"), 0U);
   EXPECT_EQ(sender.Stat("net", "srtp-refused"), 0U);
   EXPECT_EQ(path.receiver.pipeline().Stat("net", "srtp-refused"), 0U);
-  // At EOS the sender sends an encrypted BYE, which ends the stream of the receiver.
+  // The sender sends an encrypted BYE at EOS. The BYE ends the stream of the receiver.
   EXPECT_TRUE(sender.Finish(seconds(5)));
 }
 INSTANTIATE_TEST_SUITE_P(Ciphers, Srtp,

@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Runs the demo, and reads the private memory of its processes each second. Fails if the memory of
-# an end or of the link is larger than in the first minute.
+# an end or of the link has grown by more than $allowed since the first minute.
 # Usage: memory.sh [MINUTES [OPTIONS OF THE DEMO]]
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../../.." && pwd)
 seconds=$((60 * ${1:-4}))
 [ $# = 0 ] || shift
-# The memory may grow by as many KiB, because the allocator may use pages that it has not used
-# before.
+# The allowed growth [KiB]. The memory may grow a little, because the allocator may use pages that
+# it has not used before.
 allowed=1024
 work=$(mktemp -d)
 trap 'kill ${demo:-} 2>/dev/null || true; rm -rf "$work"' EXIT
