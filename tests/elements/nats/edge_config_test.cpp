@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// lidar-edge: its configuration.
+// Tests of the configuration of lidar-edge.
 #include "src/tools/apps/edge/edge_config.h"
 
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# What a robot costs lidar-edge: processor time for each slice, and memory, with JetStream. Run by hand
-# (docs/results/fleet.md). The slices of one sensor are sent as those of many robots, each with its
-# own SCReAM.
+# Measures what each robot costs lidar-edge, with JetStream: the processor time per slice, and the
+# memory. The slices of one sensor are sent as if they were those of many robots, each with its own
+# SCReAM. This script is run by hand (docs/results/fleet.md).
 # usage: edge_load.sh ROBOTS SECONDS [FIRST_PORT]
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
@@ -26,7 +26,7 @@ printf '{"http-port": 0, "interval": 0.5, "nats": {"url": "%s", "jetstream": "fl
 "$build/src/tools/apps/edge/lidar-edge" "$folder/edge.json" >"$folder/out" 2>"$folder/err" &
 until metrics=$(sed -n "s/^metrics //p" "$folder/out" 2>/dev/null) && [ -n "$metrics" ]; do sleep 0.1; done
 
-# The sum over all robots.
+# Prints the sum of metric $1 over all robots.
 metric() { curl -s "$metrics" | awk -v name="$1" '$1 ~ "^" name "({|$)" { s += $2 } END { print s + 0 }'; }
 sleep 2
 idle=$(metric process_resident_memory_bytes)

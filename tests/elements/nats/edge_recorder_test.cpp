@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// lidar-edge: each setting reaches its element, a session keeps nothing of the last session, and a
-// recorder that fails harms no other branch.
+// Tests of parts of lidar-edge: each setting reaches its element, a session keeps no packets of the
+// previous session, and a recorder that fails does not disturb the other branches.
 #include "src/tools/apps/edge/pipeline.h"
 #include "src/tools/apps/edge/shared_port.h"
 #include "tests/elements/nats/nats_server.h"
@@ -105,19 +105,20 @@ TEST(SharedPort, ASocketThatIsOpenedHasNothingFromBefore) {
     while (g_socket_receive(socket, bytes, sizeof bytes, nullptr, nullptr) > 0) ++count;
     return count;
   };
-  send();  // while the socket is shut
+  send();  // sent while the socket is shut
   edge::ShutSocket(socket, false);
   EXPECT_EQ(received(), 0);
   send();
   EXPECT_EQ(received(), 1);
-  send();  // waits in the socket
+  send();  // waits in the socket's queue
   edge::ShutSocket(socket, true);
   send();
   edge::ShutSocket(socket, false);
   EXPECT_EQ(received(), 0) << "of the session before";
   send();
   EXPECT_EQ(received(), 1);
-  // The second byte of RTCP is 192 to 223. Its SSRC ends at byte 7, that of RTP at byte 11.
+  // The second byte of an RTCP packet is from 192 to 223. The SSRC is in bytes 4 to 7 of an RTCP
+  // packet, and in bytes 8 to 11 of an RTP packet.
   for (const auto& [type, at] :
        {std::pair{191, 11}, std::pair{192, 7}, std::pair{223, 7}, std::pair{224, 11}})
     for (const int place : {7, 11}) {
@@ -164,7 +165,7 @@ TEST_F(EdgeRecorder, ThatFailsAtTheEndDoesNotCutTheStreamShort) {
     edge::RemoveRecorder(pipeline_.get());
   }));
   EXPECT_GE(errors, 1);
-  // The sink posts the end before its pad is at EOS.
+  // The sink posts the EOS message before its pad has the flag EOS.
   EXPECT_TRUE(Eventually([&] { return GST_PAD_IS_EOS(PadOf("sink").get()); }));
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// lidar-edge: pauses and reports of a robot's sessions, at times that the test chooses.
+// Tests of lidar-edge: the pauses between the sessions of a robot, and the sessions' reports. The
+// test sets the time.
 #include <gio/gio.h>
 
 #include <nlohmann/json.hpp>
@@ -16,7 +17,7 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 using Object = std::unique_ptr<void, decltype(&g_object_unref)>;
 
-/// A session without NATS, and its robot, which sends what looks like RTP.
+/// A session without NATS, and a socket that sends packets with an RTP header, as the robot would.
 class EdgeSession : public ::testing::Test {
  protected:
   EdgeSession()
@@ -31,7 +32,7 @@ class EdgeSession : public ::testing::Test {
   void Make(GSocket* socket = nullptr) {
     session_ = std::make_unique<edge::Session>(config_, robot_, socket);
   }
-  /// Polls the session `since` after the first one began.
+  /// Polls the session at `since` after kBegin.
   void PollAt(Duration since) { session_->Poll(kBegin + since); }
   void Send(int packets, std::size_t size = 1'000) {
     const Object to(g_inet_socket_address_new_from_string("127.0.0.1", robot_.port),
@@ -141,7 +142,7 @@ TEST_F(EdgeSession, ARobotThatIsSilentIsGoneAndMayComeAgainAtOnce) {
   EXPECT_EQ(Count("failures") + Count("penalties"), 0U);
 }
 
-/// Pauses [s] after failures in a row.
+/// The pauses after failures that follow each other without a success [s].
 constexpr int kPauses[] = {2, 4, 8, 16, 32, 64, 64};
 
 TEST_F(EdgeSession, AfterEachFailureInARowThePauseIsLonger) {
@@ -177,7 +178,7 @@ TEST_F(EdgeSession, ARecorderThatFailsIsReplacedAndTheSessionGoesOn) {
   const auto expect_pause = [&](int pause_s) {
     ASSERT_TRUE(records());
     Fail("mcapsink");
-    Fail("queue");  // follows from the sink's failure, and is not counted
+    Fail("queue");  // is a result of the sink's failure, so it is not counted
     PollAt(at);
     EXPECT_FALSE(records());
     EXPECT_EQ(Count("record-failures"), ++failures);
@@ -259,7 +260,7 @@ TEST_F(EdgeSession, OnASharedPortHasNothingOfItsRest) {
   const Object bound(g_socket_get_local_address(port.socket(0), nullptr), g_object_unref);
   const auto number = g_inet_socket_address_get_port(G_INET_SOCKET_ADDRESS(bound.get()));
   Make(port.socket(0));
-  robot_.port = number;  // for Send()
+  robot_.port = number;  // Send() uses this port
   PollAt({});
   Send(10);
   const std::uint64_t size = Received(10) / 10;
@@ -268,7 +269,7 @@ TEST_F(EdgeSession, OnASharedPortHasNothingOfItsRest) {
   Send(10);
   PollAt(seconds(100));
   ASSERT_EQ(state(), "waiting");
-  Send(1, 500);  // after all packets that the socket still holds
+  Send(1, 500);  // arrives after all packets that are still in the socket
   EXPECT_TRUE(Eventually([&] { return Received(1) % size != 0; }));
   EXPECT_EQ(Source().at("packets-received"), 1U) << "of the rest nothing came";
 }

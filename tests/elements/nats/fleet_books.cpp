@@ -8,12 +8,13 @@
 namespace lidar::test {
 namespace {
 
-/// The slices that one natssink stored from start to stop: a session of the edge.
+/// The slices that one natssink stored between its start and its stop. This is one session of the
+/// edge.
 struct Run {
   std::size_t life = 0;
   std::optional<SessionReport> report;
   std::uint64_t messages = 0;
-  Missing missing;  // in this run, by the slices' numbers
+  Missing missing;  // of this run, by the gaps in the slices' numbers
 };
 
 class Bookkeeper {
@@ -53,7 +54,8 @@ class Bookkeeper {
     return life;
   }
 
-  /// Assigns reports to runs: the runs of a life are those of its sessions that received something.
+  /// Assigns reports to runs. In each life of the edge, the first run gets the report of the first
+  /// session that received something, the second run that of the second, and so on.
   void MatchReports(const std::vector<SessionReport>& sessions) {
     std::map<std::size_t, std::vector<SessionReport>> of_life;
     for (const SessionReport& session : sessions)
@@ -66,7 +68,8 @@ class Bookkeeper {
     }
   }
 
-  /// Counts, for each life of the edge, the acknowledged slices that the stream does not have.
+  /// Counts, for each life of the edge, how many slices were acknowledged but are not in the
+  /// stream.
   void CheckAcknowledged(const std::vector<SessionReport>& sessions) {
     std::vector<std::uint64_t> gone(lives_.size());
     for (const SessionReport& session : sessions) gone[session.life] += session.acknowledged;
@@ -102,7 +105,8 @@ class Bookkeeper {
     if (!gap.empty()) BookGap(before, gap, nullptr);
   }
 
-  /// Finds who lost the slices of `gap`; `after` is null at the end of the stream.
+  /// Finds which part lost the slices of `gap`. `after` is null if the gap is at the end of the
+  /// stream.
   void BookGap(const StoredSlice* before, const std::vector<const SentSlice*>& gap,
                const StoredSlice* after) {
     Missing missing;
@@ -116,7 +120,7 @@ class Bookkeeper {
     Tell(gap, missing);
   }
 
-  /// Finds who lost the slices of a gap within one session.
+  /// Finds which part lost the slices of a gap within one session.
   void BookWithin(const StoredSlice& before, const std::vector<const SentSlice*>& gap,
                   const StoredSlice& after, Missing* missing) {
     Run& run = runs_[after.run];
@@ -131,7 +135,8 @@ class Bookkeeper {
     run.missing += *missing;
   }
 
-  /// Finds who lost the slices of a gap before a session: the first one, or one after a kill.
+  /// Finds which part lost the slices of a gap that ends with the first slice of a session.
+  /// `before` is null if that is the first session of all.
   void BookBetween(const StoredSlice* before, const std::vector<const SentSlice*>& gap,
                    const StoredSlice& after, Missing* missing) {
     Run& run = runs_[after.run];
@@ -140,7 +145,7 @@ class Bookkeeper {
         run.report ? run.report->receiving_from : std::numeric_limits<double>::infinity();
     const bool killed = last == nullptr || lives_[last->life].killed.has_value();
     const double end = last == nullptr ? 0 : lives_[last->life].killed.value_or(0);
-    std::uint64_t old = 0;  // reached the edge early enough to be in its last report
+    std::uint64_t old = 0;  // sent early enough to be in the last report before the kill
     for (const SentSlice* slice : gap) {
       if (killed && slice->at <= end) {
         ++missing->at_kill;
@@ -162,13 +167,14 @@ class Bookkeeper {
     *missing += head;
   }
 
-  /// Slices sent after the returned time may be lost without a report.
+  /// Returns the time until which the report of `run` covers all slices. Slices that were sent
+  /// later may be lost without a report.
   double ToldUntil(const Run& run) const {
     if (!lives_[run.life].killed) return std::numeric_limits<double>::infinity();
     return run.report ? run.report->at - report_age_ : 0;
   }
 
-  /// Compares the missing slices with the counts of the edge.
+  /// Counts a missing slice as not counted if the edge's own counts do not include it.
   void Settle(Run* run) {
     const SessionReport report = run->report.value_or(SessionReport());
     const bool killed = lives_[run->life].killed.has_value();
@@ -199,7 +205,8 @@ class Bookkeeper {
   const double report_age_;
   std::map<std::tuple<std::uint32_t, std::uint32_t>, StoredSlice> stored_;
   std::map<std::uint64_t, Run> runs_;
-  std::vector<std::uint64_t> order_;  // ids of runs, in the order of storing
+  // the runs, in the order in which their first slices were stored
+  std::vector<std::uint64_t> order_;
   RobotBooks books_;
 };
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Books of a fleet whose parts are killed: what became of each slice that a robot sent.
+// Books of a fleet whose parts are killed. The books tell what happened to each slice that a robot
+// sent.
 #pragma once
 #include <cstdint>
 #include <limits>
@@ -10,17 +11,17 @@
 
 namespace lidar::test {
 
-/// Times are seconds of one clock of the machine.
+/// A slice that a robot sent. All times in this file are in seconds, by one clock of the machine.
 struct SentSlice {
   std::uint32_t scan = 0;
   std::uint32_t index = 0;
   double at = 0;
-  std::size_t hash = 0;  // of its bytes
+  std::size_t hash = 0;  // of the slice's bytes
 
   std::tuple<std::uint32_t, std::uint32_t> place() const { return {scan, index}; }
 };
 
-/// A slice as JetStream has it at the end. `run` and `number` come from natssink.
+/// A slice that is in the JetStream stream at the end. natssink wrote `run` and `number`.
 struct StoredSlice {
   std::uint32_t scan = 0;
   std::uint32_t index = 0;
@@ -32,30 +33,31 @@ struct StoredSlice {
   std::tuple<std::uint32_t, std::uint32_t> place() const { return {scan, index}; }
 };
 
-/// The time from when lidar-edge was up until it was killed.
+/// The time from the start of a lidar-edge process until it was killed.
 struct EdgeLife {
   double up = 0;
   std::optional<double> killed;
 };
 
-/// The last report of lidar-edge on a session of one robot.
+/// The last report that lidar-edge made about a session of one robot.
 struct SessionReport {
   std::size_t life = 0;
   double receiving_from = std::numeric_limits<double>::infinity();
   double at = 0;
-  std::uint64_t received = 0;      // by rtplidardepay
-  std::uint64_t lost = 0;          // counted by rtplidardepay: lost, damaged, without a config
-  std::uint64_t dropped = 0;       // counted by natssink
-  std::uint64_t waiting = 0;       // in natssink
-  std::uint64_t acknowledged = 0;  // by JetStream
+  std::uint64_t received = 0;      // number of slices that rtplidardepay received
+  // slices that rtplidardepay counted: lost, damaged, without a config
+  std::uint64_t lost = 0;
+  std::uint64_t dropped = 0;       // slices that natssink dropped
+  std::uint64_t waiting = 0;       // slices that wait in natssink
+  std::uint64_t acknowledged = 0;  // slices that JetStream acknowledged
 };
 
-/// Missing slices, by the part that has counted them.
+/// The numbers of missing slices, by the part that counted them.
 struct Missing {
-  std::uint64_t on_path = 0;  // rtplidardepay: the network, and what SCReAM gives up
-  std::uint64_t by_sink = 0;  // natssink
-  std::uint64_t at_kill = 0;  // lost in the edge, unacknowledged or not yet reported
-  std::uint64_t away = 0;     // sent from when the edge was killed until it received again
+  std::uint64_t on_path = 0;  // by rtplidardepay: lost by the network or dropped by SCReAM
+  std::uint64_t by_sink = 0;  // by natssink
+  std::uint64_t at_kill = 0;  // lost when the edge was killed: unacknowledged or not yet reported
+  std::uint64_t away = 0;     // sent between the kill of the edge and its next reception
   std::uint64_t not_counted = 0;
 
   std::uint64_t all() const { return on_path + by_sink + at_kill + away + not_counted; }
@@ -64,22 +66,23 @@ struct Missing {
 
 struct RobotBooks {
   std::uint64_t sent = 0;
-  std::uint64_t received = 0;      // by the last report of each session
-  std::uint64_t acknowledged = 0;  // by the last report of each session
-  std::uint64_t stored = 0;        // number of slices
-  std::uint64_t twice = 0;         // number of messages that repeat a slice
-  std::uint64_t strange = 0;       // number of messages that no robot sent
+  std::uint64_t received = 0;      // sum of the sessions' last reports
+  std::uint64_t acknowledged = 0;  // sum of the sessions' last reports
+  std::uint64_t stored = 0;        // number of stored slices
+  std::uint64_t twice = 0;         // number of stored messages that repeat a slice
+  std::uint64_t strange = 0;       // number of stored messages that no robot sent
   std::uint64_t acknowledged_and_gone = 0;
   Missing missing;
-  std::vector<std::string> gaps;  // a line for each
+  std::vector<std::string> gaps;  // one line for each gap
 
   RobotBooks& operator+=(const RobotBooks& o);
-  /// Returns true if no acknowledged slice was lost, and each loss was counted.
+  /// Returns true if no acknowledged slice was lost and a part counted each loss.
   bool Balanced() const { return acknowledged_and_gone + missing.not_counted + strange == 0; }
 };
 
-/// `sent`, `sessions` and `lives` are in the order of time, `stored` in that of the stream. Slices
-/// sent later than `report_age` before a killed edge's last report count as lost with the edge.
+/// Makes the books of one robot. `sent`, `sessions` and `lives` are sorted by time, `stored` is in
+/// the order of the stream. If an edge was killed, slices that were sent later than `report_age`
+/// before its last report count as lost with the edge.
 RobotBooks MakeBooks(const std::vector<SentSlice>& sent, const std::vector<StoredSlice>& stored,
                      const std::vector<SessionReport>& sessions, const std::vector<EdgeLife>& lives,
                      double report_age);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Books of a fleet list losses by their cause, and list losses that no part counted.
+// Tests that the books of a fleet list losses by their cause, and that they also list the losses
+// that no part counted.
 #include "tests/elements/nats/fleet_books.h"
 
 #include <gtest/gtest.h>
@@ -9,8 +10,8 @@ namespace {
 
 constexpr double kReportAge = 1;
 
-/// A robot sends a slice a second for a minute, over an edge that is killed at 30 s and receives
-/// again at 35 s.
+/// A robot sends one slice per second for a minute. Its edge is killed at 30.5 s, and the next edge
+/// receives from 35 s on.
 class FleetBooks : public ::testing::Test {
  protected:
   FleetBooks() {
@@ -23,7 +24,8 @@ class FleetBooks : public ::testing::Test {
   void Store(std::uint64_t run, std::uint32_t from, std::uint32_t to) {
     for (std::uint32_t i = from; i < to; ++i) stored_.push_back({i, 0, i + 0.2, i, run, i - from});
   }
-  /// Loses a slice that never came to natssink, so later slices have lower numbers.
+  /// Loses a slice before it reaches natssink. Therefore all later slices of the run get a lower
+  /// number.
   void LoseOnPath(std::size_t at) {
     for (std::size_t i = at + 1; i < stored_.size(); ++i)
       if (stored_[i].run == stored_[at].run) --stored_[i].number;
@@ -73,7 +75,7 @@ TEST_F(FleetBooks, NoticeWhatThePathLostAndNobodyCounted) {
 TEST_F(FleetBooks, NoticeWhatTheSinkLostAndNobodyCounted) {
   LoseInSink(40);
   sessions_[1].acknowledged = 24;
-  sessions_[1].lost = 1;  // rtplidardepay counts a loss, not natssink
+  sessions_[1].lost = 1;  // rtplidardepay counts a loss, but natssink does not
   EXPECT_EQ(Make().missing.not_counted, 1U);
 }
 
@@ -93,7 +95,8 @@ TEST_F(FleetBooks, NoticeWhatWaitedForLongerThanTheEdgeSaid) {
   stored_.erase(stored_.begin() + 20, stored_.begin() + 30);
   sessions_[0].acknowledged = 20;
   sessions_[0].waiting = 8;
-  // Eleven slices are missing. Nine were sent early enough for the last report, which counts eight.
+  // Eleven slices are missing. Nine of them were sent early enough to be in the last report, but
+  // the report counts only eight.
   const RobotBooks books = Make();
   EXPECT_EQ(books.missing.not_counted, 1U);
   EXPECT_EQ(books.missing.at_kill, 10U);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Workers and servers of a fleet are killed, one after another: a cluster of three nats-servers,
-// robots that drive, and workers that follow them. Run by hand: it takes minutes
-// (docs/results/fleet.md).
+// Kills the workers and the servers of a fleet, one after another. The fleet has a cluster of three
+// nats-servers, robots that drive, and workers that process the robots' slices. This program is run
+// by hand because it takes minutes (docs/results/fleet.md).
 #include <future>
 #include <map>
 #include <tuple>
@@ -58,8 +58,8 @@ class Robot {
   NatsPipeline poses_;
 };
 
-/// Returns how many of `sent` are not in `stored`, in any order: a stream that loses its leader may
-/// change the order.
+/// Returns how many of `sent` are not in `stored`. The order does not matter, because it may change
+/// when a stream loses its leader.
 std::size_t Missing(const std::vector<Kept>& sent, const std::vector<Kept>& stored) {
   std::set<std::string> there;
   for (const Kept& kept : stored) there.insert(kept.bytes);
@@ -67,7 +67,7 @@ std::size_t Missing(const std::vector<Kept>& sent, const std::vector<Kept>& stor
       sent.begin(), sent.end(), [&](const Kept& kept) { return there.count(kept.bytes) == 0; }));
 }
 
-/// Returns how many of `stored` come after a slice that was captured later.
+/// Returns how many of `stored` were captured earlier than a slice that is before them.
 std::size_t OutOfOrder(const std::vector<Kept>& stored) {
   GstClockTime newest = 0;
   return static_cast<std::size_t>(std::count_if(stored.begin(), stored.end(), [&](const Kept& k) {
@@ -83,7 +83,7 @@ class FleetCluster : public NatsTest {
     NatsTest::SetUp();
     if (IsSkipped()) return;
     cluster_.Start();
-    // The stream keeps what workers publish, so that every pose can be counted.
+    // This stream stores all poses that workers publish, so the test can count the poses.
     const nats::StreamSettings poses{"poses", std::chrono::hours(1), 0, 3, {}};
     std::string why;
     ASSERT_TRUE(WaitFor([&] {
@@ -108,7 +108,7 @@ class FleetCluster : public NatsTest {
     for (auto& worker : workers_) owned += worker->Robots().size();
     return owned == kRobots;
   }
-  /// Returns the time until a leader answers for each of the streams [s].
+  /// Returns the time until each of the streams has a leader that answers [s].
   double TimeToLeaders() {
     const auto begin = SteadyClock::now();
     jsOptions options;
@@ -123,10 +123,11 @@ class FleetCluster : public NatsTest {
       }));
     return SecondsSince(begin);
   }
-  /// Returns the time until each of the robots has a pose of its new worker [s].
+  /// Returns, for each of the robots `names`, the time until its new worker has published a pose
+  /// [s].
   std::map<std::string, double> TimesToPoses(const std::set<std::string>& names) {
     const auto begin = SteadyClock::now();
-    // Lets the last poses of the old worker arrive first: they must not count.
+    // Waits until the last poses of the old worker have arrived, because they must not count.
     std::this_thread::sleep_for(milliseconds(100));
     std::map<std::string, std::size_t> before;
     for (const auto& robot : robots_) before[robot->name()] = robot->poses();
@@ -164,7 +165,7 @@ void FleetCluster::KillWorkers() {
     for (const auto& [name, time] : TimesToPoses(orphans)) times.push_back(time);
     *victim = NewWorker();
     ASSERT_TRUE(WaitFor([this] { return AllOwned(); }));
-    std::this_thread::sleep_for(milliseconds(1500));  // until the new worker is ready to take over
+    std::this_thread::sleep_for(milliseconds(1500));  // by then the new worker can take robots over
   }
   std::sort(times.begin(), times.end());
   ASSERT_FALSE(times.empty());
@@ -208,7 +209,8 @@ void FleetCluster::CountAll() {
     const auto sent = robot->sender().buffers();
     EXPECT_EQ(robot->sender().stat("messages-dropped"), 0U);
     EXPECT_EQ(robot->sender().stat("messages-acknowledged"), sent.size());
-    // A restarted server replays the messages that it has, which may be incomplete at first.
+    // A server that was just restarted may not have all messages yet, so a replay from it may be
+    // incomplete.
     std::vector<Kept> stored;
     EXPECT_TRUE(WaitFor([&] {
       stored = robot->Replay("fleet", "lidar");
@@ -220,8 +222,8 @@ void FleetCluster::CountAll() {
       poses = robot->Replay("poses", "odometry");
       return !poses.empty() && poses.back().capture_time + 200 * GST_MSECOND > last;
     }));
-    // The stream of poses has gaps while it had no leader, because workers do not wait for
-    // acknowledgements.
+    // Workers do not wait for acknowledgements of their poses. Therefore the stream lacks the poses
+    // that were published while it had no leader.
     for (const Kept& live : robot->LivePoses()) poses.push_back(live);
     std::stable_sort(poses.begin(), poses.end(), [](const Kept& a, const Kept& b) {
       return std::tie(a.capture_time, a.bytes) < std::tie(b.capture_time, b.bytes);

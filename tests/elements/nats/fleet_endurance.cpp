@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A whole fleet for minutes while its parts are killed: robots with SCReAM, lidar-edge, a cluster
-// of three nats-servers and workers; and books of every slice. Run by hand, by fleet_endurance.sh.
+// Runs a whole fleet for minutes and kills parts of it: robots with SCReAM, lidar-edge, a cluster
+// of three nats-servers, and workers. The books tell what happened to every slice. This program is
+// run by hand, by fleet_endurance.sh.
 #include <array>
 #include <functional>
 #include <random>
@@ -19,7 +20,7 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr std::size_t kEnduringWorkers = 2;
-constexpr double kSamplePause = 0.2;  // between reads of the edge's reports [s]
+constexpr double kSamplePause = 0.2;  // between two reads of the edge's reports [s]
 constexpr double kReportAge = 1;      // an edge reports each slice within this time [s]
 constexpr double kMemoryPause = 60;
 
@@ -70,23 +71,24 @@ class FleetEndurance : public NatsTest {
   std::unique_ptr<AckWitness> witness_;
   std::unique_ptr<EdgeProcess> edge_;
   std::unique_ptr<Robots> robots_;
-  std::vector<std::unique_ptr<NatsPipeline>> poses_;  // of the robots with SLAM
-  std::vector<std::set<guint>> stored_scans_;         // of each robot, at the end
+  std::vector<std::unique_ptr<NatsPipeline>> poses_;  // of the robots with a worker
+  std::vector<std::set<guint>> stored_scans_;         // of each robot, when the run has ended
   std::vector<std::unique_ptr<WorkerProcess>> workers_;
-  std::map<pid_t, std::size_t> lines_told_;  // of workers
+  // by worker: the number of its lines that were printed
+  std::map<pid_t, std::size_t> lines_told_;
   struct Down {
     double until;
     std::function<void()> restart;
   };
   std::vector<Down> down_;
-  std::array<int, 3> kills_{};  // servers, edge, workers
+  std::array<int, 3> kills_{};  // numbers of killed servers, edges and workers
   double begin_ = 0;
 };
 
 void FleetEndurance::SetUp() {
   NatsTest::SetUp();
   if (IsSkipped()) return;
-  setvbuf(stdout, nullptr, _IOLBF, 0);  // shows each line at once: a run may take an hour
+  setvbuf(stdout, nullptr, _IOLBF, 0);  // prints each line at once, because a run may take an hour
   cluster_.Start();
   witness_ = std::make_unique<AckWitness>(cluster_.url(), "fleet");
   const std::vector<int> ports = FreePorts(options_.robots);
@@ -162,7 +164,7 @@ void FleetEndurance::KillSomething() {
   const std::size_t part = random_() % (workers_.empty() ? 2 : 3);
   const std::size_t which = random_();
   if (part == 0) {
-    // The other two servers must be up and have all messages.
+    // A server may be killed only if the other two run and have all messages.
     if (ClusterIsWhole())
       KillServer(which % kServers);
     else
@@ -219,14 +221,15 @@ void FleetEndurance::Run() {
     RestartDue();
     if (options_.kill_every <= 0 || now < kill_at) continue;
     kill_at = now + options_.kill_every * spread(random_);
-    // If the edge is killed now, its last report is fresh.
+    // Reads the edge's reports first, so that the last report is recent if the edge is killed now.
     edge_->Sample();
     KillSomething();
   }
   TellMemory();
 }
 
-/// Waits until all parts are back, all slices have arrived, and the edge has reported that.
+/// Waits until all parts run again, all slices have arrived, and the edge has reported these
+/// slices.
 void FleetEndurance::Settle() {
   ASSERT_TRUE(WaitFor([this] {
     RestartDue();
@@ -318,7 +321,8 @@ void FleetEndurance::CountSlices() {
   EXPECT_EQ(gone, 0U);
 }
 
-/// Poses are not acknowledged, so missing ones are counted where they are received.
+/// Counts the poses that each receiver lacks. Poses are not acknowledged, so only a receiver can
+/// notice that some are missing.
 void FleetEndurance::CountPoses() {
   for (std::size_t i = 0; i < poses_.size(); ++i) {
     const auto& scans = robots_->ScansOf(i);

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# Runs a whole fleet on loopback, kills its servers, its edge and its workers, and keeps books of
-# every slice (docs/results/fleet.md). Run by hand. Fails if an acknowledged slice is lost, or if no
-# part counted a lost one.
+# Runs a whole fleet on the loopback interface, kills its servers, its edge and its workers, and
+# keeps books of every slice (docs/results/fleet.md). This script is run by hand. It fails if an
+# acknowledged slice is lost, or if a slice is lost that no part counted.
 set -euo pipefail
 usage() {
   cat >&2 <<'END'

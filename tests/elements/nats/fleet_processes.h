@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The parts of a fleet that can be killed, and their reports until then.
+// The processes of a fleet that tests kill, and what the processes reported before that.
 #pragma once
 #include <csignal>
 #include <cstdlib>
@@ -22,7 +22,7 @@
 
 namespace lidar::test {
 
-/// A lidar-edge that is killed and started again, and its last report of each session.
+/// A lidar-edge process that is killed and started again. Stores the last report of each session.
 class EdgeProcess {
  public:
   EdgeProcess(nlohmann::json config, const std::string& folder) : path_(folder + "/edge.json") {
@@ -31,7 +31,7 @@ class EdgeProcess {
     std::ofstream(path_) << config.dump();
   }
 
-  /// Returns true once the edge is up.
+  /// Starts the process. Returns true once the process is ready, or false if that takes too long.
   bool Start() {
     process_ = std::make_unique<tools::ChildProcess>(
         tools::ChildProcess::Config{{std::getenv("LIDAR_EDGE"), path_}, path_ + ".log", false});
@@ -53,7 +53,7 @@ class EdgeProcess {
   bool is_up() const { return process_ != nullptr; }
   pid_t pid() const { return process_ ? process_->pid() : 0; }
   const std::vector<EdgeLife>& lives() const { return lives_; }
-  /// Returns the sessions in the order of time.
+  /// Returns the sessions of `robot`, sorted by time.
   std::vector<SessionReport> SessionsOf(const std::string& robot) const {
     std::vector<SessionReport> sessions;
     const auto found = sessions_.find(robot);
@@ -62,7 +62,7 @@ class EdgeProcess {
     return sessions;
   }
 
-  /// Reads the reports of the edge.
+  /// Reads the edge's metrics and updates the reports of its sessions.
   void Sample() {
     if (!is_up()) return;
     const auto answer = HttpGet("127.0.0.1:" + std::to_string(port_), "/metrics");
@@ -79,7 +79,7 @@ class EdgeProcess {
  private:
   using Figures = std::map<std::string, std::uint64_t, std::less<>>;
 
-  /// Reads lines such as: name{robot="r1",sensor="front"} 7
+  /// Parses lines such as: name{robot="r1",sensor="front"} 7
   static std::map<std::string, Figures> Parse(const std::string& text) {
     constexpr std::string_view kLabel = "{robot=\"";
     std::map<std::string, Figures> robots;
@@ -121,7 +121,8 @@ class EdgeProcess {
   std::map<std::string, std::map<std::pair<std::size_t, std::uint64_t>, SessionReport>> sessions_;
 };
 
-/// Listens to the acknowledgements of a stream to its publishers.
+/// Subscribes to the acknowledgements that the server sends to the publishers of a stream, and
+/// stores them.
 class AckWitness {
  public:
   AckWitness(const std::string& url, const std::string& stream)
@@ -144,8 +145,8 @@ class AckWitness {
   }
 
   std::size_t seen() const { return seen_.size(); }
-  /// Counts acknowledgements at whose sequence number the stream has no slice, or one with another
-  /// number or run.
+  /// Counts the acknowledgements whose message is not in the stream. `by_sequence` has the slices
+  /// of the stream by sequence number. A slice with another number or run is another message.
   std::size_t CountGone(const std::map<std::uint64_t, StoredSlice>& by_sequence) const {
     std::map<std::string, std::uint64_t> runs;
     return static_cast<std::size_t>(std::count_if(seen_.begin(), seen_.end(), [&](const Seen& ack) {
@@ -178,7 +179,7 @@ class AckWitness {
   }
 
   const std::string sign_;
-  std::vector<Seen> seen_;  // written by the subscription's thread, until the end
+  std::vector<Seen> seen_;  // the subscription's thread writes it until End()
   std::unique_ptr<nats::Connection> connection_;
   nats::SubscriptionPtr subscription_;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Robots of a fleet that send, and what they have sent.
+// Robots of a fleet that send slices, and a list of what each robot has sent.
 #pragma once
 #include <gst/gst.h>
 
@@ -14,10 +14,11 @@
 
 namespace lidar::test {
 
-/// The clock by which sent slices are timed [s].
+/// Returns the time of the clock that gives the times of sent slices [s].
 inline double WallTime() { return static_cast<double>(g_get_real_time()) * 1e-6; }
 
-/// All robots share one sensor. Each robot codes its slices and sends them on its own path.
+/// Simulated robots. All of them share one sensor, but each robot codes its slices and sends them
+/// over its own connection.
 class Robots {
  public:
   Robots(const std::vector<std::string>& names, const std::vector<int>& ports) : names_(names) {
@@ -43,7 +44,7 @@ class Robots {
   }
   ~Robots() { gst_element_set_state(pipeline_.get(), GST_STATE_NULL); }
   void Play() { gst_element_set_state(pipeline_.get(), GST_STATE_PLAYING); }
-  /// Stops sending, without goodbyes.
+  /// Stops the sensor. The robots send no goodbyes.
   void Hold() {
     const gst::ElementPtr source(gst_bin_get_by_name(GST_BIN(pipeline_.get()), "source"));
     const gst::PadPtr pad(gst_element_get_static_pad(source.get(), "src"));
@@ -53,12 +54,12 @@ class Robots {
   }
 
   const std::vector<std::string>& names() const { return names_; }
-  /// Call this only after Hold().
+  /// Returns the slices that `robot` sent. May be called only after Hold().
   const std::vector<SentSlice>& SentBy(std::size_t robot) const { return sent_[robot].slices; }
   const std::map<guint, GstClockTime>& ScansOf(std::size_t robot) const {
     return sent_[robot].scans;
   }
-  /// Returns the losses that the robots' SCReAM counted, as text.
+  /// Returns a text with the losses that the robots' SCReAM senders counted.
   std::string SenderLosses() const {
     guint64 dropped = 0;
     guint64 lost = 0;
@@ -73,8 +74,8 @@ class Robots {
 
  private:
   struct Account {
-    std::vector<SentSlice> slices;        // written by the streaming thread, until the end
-    std::map<guint, GstClockTime> scans;  // when the first of their slices was captured
+    std::vector<SentSlice> slices;        // the streaming thread writes it until Hold()
+    std::map<guint, GstClockTime> scans;  // by scan number: the capture time of the first slice
   };
 
   gst::ElementPtr ElementOf(const char* kind, std::size_t robot) const {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The statistics that the programs of a fleet publish.
+// Tests of the statistics that the programs of a fleet publish.
 #include <arpa/inet.h>
 #include <fcntl.h>
 #include <netdb.h>
@@ -83,7 +83,7 @@ void Ask(const tools::FileDescriptor& client, int port, const std::string& reque
   send(client.get(), request.data(), request.size(), MSG_NOSIGNAL);
 }
 
-/// Returns clients that connect to a port and send `request`.
+/// Returns the sockets of `count` clients that connected to `port` and sent `request`.
 std::vector<tools::FileDescriptor> Clients(int port, std::size_t count,
                                            const std::string& request) {
   std::vector<tools::FileDescriptor> clients;
@@ -94,7 +94,7 @@ std::vector<tools::FileDescriptor> Clients(int port, std::size_t count,
   return clients;
 }
 
-/// Returns all bytes until the server closes the connection.
+/// Returns all bytes that arrive until the server closes the connection.
 std::string Received(int fd) {
   std::string text;
   char bytes[1'024];
@@ -122,7 +122,8 @@ TEST(FleetMetrics, CutOffWhoSaysNothingOrTooMuch) {
   fleet::MetricsServer server("127.0.0.1", 0);
   EXPECT_EQ(Received(Clients(server.port(), 1, "")[0].get()), "");
   EXPECT_EQ(server.cut(), 1U) << "the silent one";
-  // The server also cuts off a request that takes too long, as it may on a busy machine.
+  // On a busy machine the server may also cut off this request because it takes too long. Then the
+  // test tries again.
   bool waits = true;
   for (int tries = 0; waits && tries < 5; ++tries) {
     const std::uint64_t before = server.cut();
@@ -137,7 +138,8 @@ TEST(FleetMetrics, CutOffTheOthersWhereNoFileDescriptorIsLeftForAnother) {
   server.Publish("lidar_edge_x 1\n");
   const auto silent = Clients(server.port(), 1, "");
   const auto answered = Clients(server.port(), 1, "GET /metrics HTTP/1.1\r\n\r\n");
-  EXPECT_NE(Received(answered[0].get()), "");  // so the server has accepted the silent client, too
+  // The answer shows that the server has also accepted the silent client, which connected earlier.
+  EXPECT_NE(Received(answered[0].get()), "");
   const tools::FileDescriptor next = NewSocket();
   rlimit before{};
   ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &before), 0);
@@ -173,7 +175,8 @@ TEST(FleetMetrics, AreAtTheirPathWithAndWithoutAQuery) {
   }
 }
 
-/// Many services have a name and a port that any program may use, such as http-alt.
+/// Many services have a name and a port that any program may use, for example http-alt. The server
+/// must print the number of its port, not the name.
 TEST(FleetMetrics, KnowTheirPortThoughItHasAName) {
   bool is_taken = true;
   setservent(1);
@@ -239,7 +242,8 @@ TEST_F(FleetReporter, TellsOfAServerThatRefusesUsOnceUntilOneTakesUs) {
   testing::internal::CaptureStderr();
   {
     fleet::Reporter reporter(settings);
-    // Each connection ends after two refusals, and the next one begins after a pause.
+    // Each connection ends after the server has refused it twice. The next connection begins after
+    // a pause.
     EXPECT_TRUE(Eventually([&] { return errors() >= 5; }));
     server_.Start({"--auth", "s3cret"});
     {
@@ -270,7 +274,7 @@ TEST(FleetStatistics, PrintAnAddressThatABrowserTakes) {
   EXPECT_EQ(told.rfind("metrics http://[::1]:", 0), 0U) << told;
 }
 
-/// Returns the number after `name` in a text for Prometheus.
+/// Returns the value of the metric `name` in a text in the format of Prometheus.
 double FigureIn(const std::string& text, const std::string& name) {
   const auto at = text.find("\n" + name + " ");
   return at == text.npos ? -1 : std::atof(text.c_str() + at + name.size() + 2);
@@ -328,7 +332,7 @@ TEST(Reporter, TellsOnceOfACertificateThatItCannotUse) {
   {
     const fleet::Reporter reporter(settings);
     for (const bool again : {true, false}) {
-      // open() of a FIFO waits for the reader.
+      // open() blocks until the other process opens the FIFO for reading.
       const tools::FileDescriptor certificate(open(path.c_str(), O_WRONLY));
       unlink(path.c_str());
       if (again) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Golden files hold what natssink and natssrc publish, output and post in scripted runs.
+// Compares what natssink and natssrc publish, output and post in scripted runs with golden files.
 #include "tests/support/golden_course.h"
 
 #include <initializer_list>
@@ -29,7 +29,7 @@ gst::BufferPtr Sample(guint8 value, gsize size = 32) {
   return buffer;
 }
 
-/// A sample with all that a buffer may have.
+/// Returns a sample whose buffer has all metadata and flags that a buffer may have.
 gst::BufferPtr FullSample(gsize size) {
   gst::BufferPtr buffer = Sample(9, size);
   const GstLidarSlice slice{7, 1, 4, 512};
@@ -47,7 +47,8 @@ nats::StreamFormat::Ptr FormatOf(const char* text) {
   return nats::StreamFormat::FromCaps(caps.get(), &why);
 }
 
-/// Messages as text. The numbers of a sink's runs, which are random, become letters.
+/// Converts messages to text. The run numbers of a sink are random, so they are replaced by
+/// letters.
 class MessageTexts {
  public:
   std::string Of(natsMsg* message) {
@@ -74,12 +75,12 @@ class MessageTexts {
   std::map<std::string, char> runs_;
 };
 
-/// A server, and a client of it that publishes and subscribes as another program would.
+/// A server, and a client that publishes and subscribes as another program would.
 class Fleet {
  public:
   explicit Fleet(Course* course) : course_(*course) {
     course_.Hide("message warning No NATS server answers at nats://localhost.*", "");
-    course_.Stop();  // the harness starts sinks
+    course_.Stop();  // GstHarness has already started the element if it is a sink
     server_.Start();
     g_object_set(course_.element(), "url", server_.url().c_str(), nullptr);
     // JetStream is ready a little later than its server.
@@ -94,11 +95,12 @@ class Fleet {
   Fleet& operator=(const Fleet&) = delete;
 
   jsCtx* js() const { return client_->js(); }
-  /// Returns once the server has, or no longer has, the element's subscription.
+  /// Waits until the server has the element's subscription, or if `is_there` is false, until the
+  /// server no longer has it.
   void AwaitSubscription(bool is_there) const {
     EXPECT_TRUE(Eventually([&] { return (server_.Subscriptions("r1.imu") > 0) == is_there; }));
   }
-  /// Makes the JetStream stream "box", which stores what is published.
+  /// Makes the JetStream stream "box", which stores all published messages.
   void MakeBox() const {
     std::string why;
     EXPECT_TRUE(Eventually([&] {
@@ -106,7 +108,7 @@ class Fleet {
                                 {"r1.imu", "r1.imu.config.*"}, &why);
     })) << why;
   }
-  /// Kills the server, and waits until the element has posted that it is gone.
+  /// Kills the server, and waits until the element has posted that the server is gone.
   void Kill() {
     messages_.reset();
     client_.reset();
@@ -115,7 +117,8 @@ class Fleet {
     EXPECT_TRUE(Eventually([&] { return course_.trace()->Count("message nats-conn") > 0; }));
     course_.Await("no server", "message warning No NATS");
   }
-  /// Restarts the server, and waits until the element's `statistics` are `wanted`.
+  /// Restarts the server, and waits until each of the element's `statistics` has the value
+  /// `wanted`.
   void Restart(std::initializer_list<const char*> statistics, guint64 wanted) {
     server_.Restart();
     course_.AwaitStat("connected", 1);
@@ -152,7 +155,8 @@ class Fleet {
     if (more != nullptr) headers.emplace_back(more, value);
     Publish("r1.imu", std::string(size, static_cast<char>(place.back())), headers);
   }
-  /// Notes all messages up to the next sample, except for caps that are published again.
+  /// Notes all messages up to and including the next sample, but skips caps that were published
+  /// before.
   void NotePublished() {
     for (bool is_caps = true; is_caps;) {
       const nats::MessagePtr message = Next();
@@ -163,7 +167,7 @@ class Fleet {
       course_.AddLine(texts_.Of(message.get()));
     }
   }
-  /// Asks for the caps, as a natssrc without them does, and notes the answer.
+  /// Requests the caps, as a natssrc without the caps does, and notes the answer.
   void Ask() {
     natsConnection_Publish(client_->get(), "r1.imu.get-config", nullptr, 0);
     for (const char* begin : {"r1.imu.get-config", "r1.imu.config."})
@@ -192,12 +196,12 @@ class Fleet {
   std::string last_caps_;
 };
 
-/// A sink that is given samples.
+/// A natssink, and a script of samples that are pushed to it.
 class SinkScript {
  public:
   SinkScript(Course* course, Fleet* fleet) : c_(*course), fleet_(*fleet) {}
 
-  /// Starts the element, and begins the stream once the element is connected.
+  /// Starts the element, and sends the first events of the stream once the element is connected.
   void Begin(const char* caps) {
     sent_ = 0;
     gst_element_set_state(c_.element(), GST_STATE_PLAYING);
@@ -215,7 +219,7 @@ class SinkScript {
     for (const gsize size : {0U, 33U}) c_.Push("of another size", Sample(1, size));
   }
   void PushTooLarge() {
-    constexpr gsize kMost = 1'048'576;  // of a message with its headers
+    constexpr gsize kMost = 1'048'576;  // maximum size of a message with its headers
     EXPECT_EQ(gst_pad_push(c_.harness()->srcpad, Sample(1, kMost).release()), GST_FLOW_OK);
     c_.AwaitStat("messages-too-large", 1);
     c_.Await("too large", "message warning A buffer is larger");
@@ -267,7 +271,7 @@ void SinkCourse(Course& c) {
   c.End();
 }
 
-/// Notes the properties of the stream "box", and all its messages.
+/// Notes the properties of the stream "box" and all messages in it.
 void NoteBox(Course& c, const Fleet& fleet, guint64 messages) {
   jsStreamInfo* found = nullptr;
   ASSERT_EQ(js_GetStreamInfo(&found, fleet.js(), "box", nullptr, nullptr), NATS_OK);
@@ -300,7 +304,8 @@ void KeptSinkCourse(Course& c) {
   sink.Push("a cloud", FullSample(24));
   fleet.Kill();
   for (guint8 i = 4; i < 6; ++i) c.Push("that waits", Sample(i, 24));
-  // An acknowledgement may come before its message is counted.
+  // An acknowledgement may arrive before the message is counted, so the test waits for both
+  // counters.
   fleet.Restart({"messages-acknowledged", "messages"}, 5);
   c.End();
   c.Stop();
@@ -310,13 +315,13 @@ void KeptSinkCourse(Course& c) {
   NoteBox(c, fleet, 6);
 }
 
-/// A source, and another program that publishes for it.
+/// A natssrc, and a client that publishes messages for it as another program would.
 class SourceScript {
  public:
   SourceScript(Course* course, Fleet* fleet) : c_(*course), fleet_(*fleet) {}
 
   void Play(const char* what) {
-    fleet_.AwaitSubscription(false);  // that of the last run is gone
+    fleet_.AwaitSubscription(false);  // waits until the previous run's subscription is gone
     gst_element_set_state(c_.element(), GST_STATE_PLAYING);
     c_.AwaitStat("connected", 1);
     fleet_.AwaitSubscription(true);
@@ -328,7 +333,8 @@ class SourceScript {
     fleet_.PublishSample(*format_, place, size, more, value);
     c_.Await(what, "buffer");
   }
-  /// Publishes a message that the source drops. The course notes that with the next message.
+  /// Publishes a message that the source drops. The golden file shows this only together with the
+  /// next message that the source outputs.
   void GiveDamaged(const char* place, std::size_t size, const char* more = nullptr,
                    const char* value = "") {
     fleet_.PublishSample(*format_, place, size, more, value);
@@ -396,7 +402,7 @@ void SourceCourse(Course& c) {
   c.Note("of a subject that is none");
 }
 
-/// Notes a source's answer to a history query.
+/// Sends a history query to a source and notes the answer.
 void NotePast(Course& c, const gst::HistoryQuestion& question) {
   const gst::QueryPtr query = gst::NewHistoryQuery(question);
   EXPECT_TRUE(Eventually([&] { return gst_pad_peer_query(c.harness()->sinkpad, query.get()); }));

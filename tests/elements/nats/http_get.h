@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Reads a path of a program's HTTP port.
+// Sends a GET request to the HTTP port of a program.
 #pragma once
 #include <gio/gio.h>
 
@@ -9,7 +9,8 @@
 
 namespace lidar::test {
 
-/// Returns the body of a 200 answer of `host`, such as "127.0.0.1:9464".
+/// Returns the body of the answer of `host`, such as "127.0.0.1:9464", or nothing if the status is
+/// not 200.
 inline std::optional<std::string> HttpGet(const std::string& host, const std::string& path) {
   GSocketClient* client = g_socket_client_new();
   g_socket_client_set_enable_proxy(client, FALSE);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// lidar-edge: robots that come and go.
+// Tests of lidar-edge with robots that connect and disconnect.
 #include <gio/gio.h>
 #include <sys/stat.h>
 
@@ -20,7 +20,7 @@ namespace {
 
 class LidarEdge : public NatsTest {
  protected:
-  /// Starts with `config`, on a free HTTP port, and a short `interval`.
+  /// Starts lidar-edge with `config`, a free HTTP port and a short `interval`.
   void StartEdge(nlohmann::json config) {
     config["http-port"] = 0;
     config["interval"] = 0.2;
@@ -51,14 +51,15 @@ class LidarEdge : public NatsTest {
     program_->Signal(SIGTERM);
     return Eventually([this] { return program_->Ended(); }) && program_->Wait() == 0;
   }
-  /// Tries again, because the program closes a connection whose request takes two seconds.
+  /// Reads the metrics. Tries again if a request takes two seconds, because the program then closes
+  /// the connection.
   std::optional<std::string> Metrics() const {
     const std::string host = "127.0.0.1:" + std::to_string(metrics_port_);
     std::optional<std::string> answer;
     Eventually([&] { return (answer = HttpGet(host, "/metrics")).has_value(); });
     return answer;
   }
-  /// Returns nothing if the metric is missing.
+  /// Returns the value of the metric, or nothing if the metric is missing.
   std::optional<double> Metric(const std::string& name, const std::string& robot) {
     const auto answer = Metrics();
     if (!answer) return std::nullopt;
@@ -67,7 +68,7 @@ class LidarEdge : public NatsTest {
     if (at == std::string::npos) return std::nullopt;
     return std::atof(answer->c_str() + at + line.size());
   }
-  /// Returns true once the statistics show that the robot's stream continues.
+  /// Returns true once the statistics show that the edge forwards new messages of the robot.
   bool GoesOn(const std::string& robot) {
     const auto sent = [&] { return Metric("lidar_natssink_messages", robot).value_or(0); };
     const double before = sent();
@@ -86,7 +87,7 @@ class LidarEdge : public NatsTest {
   int metrics_port_ = 0;
 };
 
-/// A robot that is recorded, and one that may not send much.
+/// A fixture with a robot that is recorded and a robot whose bitrate is limited to a low value.
 class TwoRobots : public LidarEdge {
  protected:
   void SetUp() override {
@@ -117,7 +118,7 @@ TEST_F(TwoRobots, HandsOnWhatARobotSendsAndTellsOfIt) {
   EXPECT_TRUE(Eventually(
       [&] { return Metric("lidar_natssink_messages_acknowledged", "r1").value_or(0) >= 20; }));
   EXPECT_EQ(Metric("lidar_edge_receiving", "r2"), 0);
-  // The robot says goodbye, and comes again.
+  // The robot sends a goodbye, stops, and connects again.
   robot->SendEos();
   EXPECT_EQ(robot->WaitForEnd(), "");
   robot.reset();
@@ -140,7 +141,7 @@ TEST_F(TwoRobots, OneThatSendsTooMuchIsShutOutAndNoOther) {
   EXPECT_EQ(Metric("lidar_edge_failures", "r1"), 0);
 }
 
-/// Lets clients connect, and sends nothing.
+/// Accepts connections, but sends nothing.
 class SilentServer {
  public:
   SilentServer()
@@ -168,8 +169,8 @@ TEST_F(LidarEdge, AServerThatSaysNothingDelaysNoRobotAndNotTheEnd) {
   nlohmann::json robots = nlohmann::json::array();
   for (const int port : FreePorts(60))
     robots.push_back({{"name", "r" + std::to_string(robots.size())}, {"port", port}});
-  // If robots waited for the server one after the other, the start and the end would take a minute
-  // each.
+  // The test would be too slow if robots waited for the server one after the other: the start and
+  // the end would each take a minute.
   robots.back()["record"] = server_.folder() + "/last-%05d.mcap";
   StartEdge({{"nats", {{"url", silent.url()}}}, {"robots", robots}});
   const auto robot = Robot(robots.back()["port"]);
@@ -224,8 +225,8 @@ TEST_F(LidarEdge, ARecordingThatFailsDoesNotEndTheStream) {
 TEST_F(LidarEdge, ADiskThatHangsDelaysNoOtherRobotAndNotTheEnd) {
   server_.Start();
   const auto ports = FreePorts(2);
-  // Opening a FIFO for writing blocks without a reader. mcapsink opens an existing file only if its
-  // location has no number; `%%` stands for a single %.
+  // Opening a FIFO for writing blocks until there is a reader. mcapsink opens an existing file only
+  // if its location has no number; `%%` stands for a single %.
   ASSERT_EQ(mkfifo((server_.folder() + "/stuck%.mcap").c_str(), 0600), 0);
   const std::string stuck = server_.folder() + "/stuck%%.mcap";
   StartEdge(
@@ -239,7 +240,7 @@ TEST_F(LidarEdge, ADiskThatHangsDelaysNoOtherRobotAndNotTheEnd) {
   const auto r2 = Robot(ports[1]);
   EXPECT_TRUE(first->WaitForBuffers(8));
   EXPECT_TRUE(second->WaitForBuffers(8));
-  // The file of r2 is opened with the first chunk, after a second.
+  // The file of r2 is opened when its first chunk is written, after about a second.
   EXPECT_TRUE(Eventually([&] { return Metric("lidar_mcapsink_chunks", "r2").value_or(0) > 0; }));
   const auto recorded = [&] { return Metric("lidar_mcapsink_messages", "r1"); };
   EXPECT_TRUE(Eventually([&] {
@@ -274,7 +275,7 @@ TEST_F(LidarEdge, TakesEncryptedRobotsToAServerThatWantsCredentials) {
   EXPECT_EQ(Metric("lidar_edge_receiving", "r2"), 0);
 }
 
-/// Expects each slice once, in any order.
+/// Expects that `got` has each slice of `sent` exactly once, in any order.
 void ExpectSameSlices(std::vector<Kept> got, std::vector<Kept> sent) {
   ASSERT_EQ(got.size(), sent.size());
   const auto earlier = [](const Kept& a, const Kept& b) {
@@ -286,7 +287,7 @@ void ExpectSameSlices(std::vector<Kept> got, std::vector<Kept> sent) {
   for (std::size_t i = 0; i < got.size(); ++i) EXPECT_TRUE(got[i].SameAs(sent[i])) << i;
 }
 
-/// Returns true if a buffer of the consumer is one of the robot's.
+/// Returns true if the consumer received at least one buffer that the robot sent.
 bool Has(const NatsPipeline& consumer, const NatsPipeline& robot) {
   const auto sent = robot.buffers();
   const auto got = consumer.buffers();
@@ -310,8 +311,8 @@ TEST_F(LidarEdge, RobotsOnOnePortAreToldApartBySsrcAndKey) {
                {{"name", "r3"}, {"ssrc", "8"}, {"max-mbps", 0.1}}}}});
   const auto first = Consumer("fleet.r1.lidar.lidar");
   const auto second = Consumer("fleet.r2.lidar.lidar");
-  auto r1 = Robot(port, "srtp-key=" + keys[0], "rtplidarpay ssrc=1192960");  // 0x123400
-  // The forger has the SSRC of r2 and the key of r1.
+  auto r1 = Robot(port, "srtp-key=" + keys[0], "rtplidarpay ssrc=1192960");  // SSRC 0x123400
+  // The forger uses the SSRC of r2, but the key of r1.
   auto forger = Robot(port, "srtp-key=" + keys[0], "rtplidarpay ssrc=7");
   const auto flood = Robot(port, "", "rtplidarpay ssrc=8");
   const auto stray = Robot(port, "", "rtplidarpay ssrc=99");
@@ -327,8 +328,8 @@ TEST_F(LidarEdge, RobotsOnOnePortAreToldApartBySsrcAndKey) {
   EXPECT_FALSE(Has(*first, *r2));
   EXPECT_FALSE(Has(*second, *r1));
   EXPECT_TRUE(Eventually([&] { return Metric("lidar_edge_penalties", "r3").value_or(0) >= 1; }));
-  // r1 leaves and comes back with another SSRC of its range, and the other robots are not
-  // disturbed.
+  // r1 disconnects and comes back with another SSRC that is in its range. This does not disturb the
+  // other robots.
   r1->SendEos();
   EXPECT_EQ(r1->WaitForEnd(), "");
   EXPECT_TRUE(Eventually([&] { return Metric("lidar_edge_sessions", "r1").value_or(0) >= 2; }));
@@ -360,7 +361,7 @@ TEST_F(LidarEdge, ARobotOfTwoAddressesOnTheSharedPortIsOneRobot) {
       "max-queue-delay=60000000000 bonding-addresses=\"" + to + "@127.0.0.1," + to + "@127.0.0.2\"",
       "rtplidarpay ssrc=7");
   const auto metric = [&](const char* name) { return Metric(name, "r1").value_or(0); };
-  // Copies are counted once the second address has become a link of the robot.
+  // Copies are counted only after the second address has been accepted as a link of the robot.
   ASSERT_TRUE(Eventually([&] { return metric("lidar_screamsrc_packets_copies") > 0; }));
   const double foreign = metric("lidar_screamsrc_packets_foreign");
   ASSERT_TRUE(consumer->WaitForBuffers(40));
@@ -409,7 +410,7 @@ TEST_F(LidarEdge, ARobotWithACertificateAgreesOnAKeyOverTwoLinks) {
   EXPECT_TRUE(Has(*consumer, *robot));
   EXPECT_TRUE(Eventually([&] { return metric("lidar_screamsrc_packets_copies") > 0; }));
   EXPECT_EQ(metric("lidar_screamsrc_dtls_handshakes"), 1);
-  // The robot says goodbye, and comes again.
+  // The robot sends a goodbye, stops, and connects again.
   robot->SendEos();
   EXPECT_EQ(robot->WaitForEnd(), "");
   EXPECT_TRUE(Eventually([&] { return metric("lidar_edge_sessions") >= 2; }));

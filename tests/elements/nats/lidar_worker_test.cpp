@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// lidar-worker: robots pass from worker to worker.
+// Tests of lidar-worker in which a robot passes from one worker to another.
 #include <gst/base/gstbasetransform.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
@@ -24,12 +24,12 @@
 namespace lidar::test {
 namespace {
 
-/// State of a decoder that is slow to start.
+/// State of the decoder `slowdecoder`, whose start waits while `hold` is true.
 struct Slowness {
   std::atomic<bool> hold{false};
-  std::atomic<int> held{0};  // number of starts that have waited
+  std::atomic<int> held{0};  // number of starts that have waited so far
   std::atomic<bool> gave_up{false};
-  std::atomic<bool> fails{false};  // the start fails once `hold` is over
+  std::atomic<bool> fails{false};  // if true, the start fails after `hold` has become false
 } slowness;
 
 struct SlowDecoder {
@@ -71,7 +71,8 @@ class LidarWorker : public NatsTest {
     robot->Play();
     return robot;
   }
-  /// The lease is long, because the machine may be busy.
+  /// Starts a worker. The default lease is long, because a busy machine may delay the worker's
+  /// renewal.
   std::unique_ptr<WorkerProcess> Worker(int lease_ms = 2000) {
     return std::make_unique<WorkerProcess>(std::vector<std::string>{
         "r*", "--url", server_.url(), "--lease", std::to_string(lease_ms)});
@@ -79,7 +80,7 @@ class LidarWorker : public NatsTest {
   void WithJetStream(const std::function<void(jsCtx*)>& use) {
     use(NatsClient(server_.url()).js());
   }
-  /// Makes the bucket if it is missing, and calls `use` with it.
+  /// Calls `use` with the key-value bucket of the workers. Makes the bucket if it is missing.
   void WithBucket(const std::function<void(kvStore*)>& use) {
     WithJetStream([&](jsCtx* js) {
       kvConfig config;
@@ -127,7 +128,8 @@ class LidarWorker : public NatsTest {
   }
   std::uint64_t LastOf(const char* stream) { return InfoOf(stream)->State.LastSeq; }
   std::string Record() { return Newest("r1.front").text; }
-  /// Expects poses without the record's velocity: the robot drives at 10 m/s, not at that velocity.
+  /// Expects that the worker did not use the velocity of the record. The robot drives at 10 m/s,
+  /// and the velocity of the record is very different.
   void ExpectNoVelocityOfTheRecord(NatsPipeline* consumer) {
     ASSERT_TRUE(consumer->WaitForBuffers(10));
     EXPECT_LT(LargestJump(consumer->buffers()), 5);
@@ -146,12 +148,13 @@ TEST_F(LidarWorker, GoesOnWhereOneThatIsKilledWas) {
                         "! fakesink name=see sync=false");
   Listen(server_, &consumer);
   const auto robot = Robot();
-  constexpr int kLongLease = 10'000;  // outlasts several pauses of a process
+  constexpr int kLongLease = 10'000;  // longer than several pauses of a process on a busy machine
   auto first = Worker(kLongLease);
   ASSERT_TRUE(consumer.WaitForBuffers(15));
   EXPECT_NE(first->Taken("r1.front").find("from now on"), std::string::npos);
   auto second = Worker(kLongLease);
-  // During 20 more poses the second worker sees that the robot is taken.
+  // While the consumer receives 20 more poses, the second worker has time to see that the robot is
+  // taken.
   const std::size_t before = consumer.count();
   ASSERT_TRUE(consumer.WaitForBuffers(before + 20));
   EXPECT_EQ(second->Taken("r1.front"), "");
@@ -163,7 +166,7 @@ TEST_F(LidarWorker, GoesOnWhereOneThatIsKilledWas) {
   const auto poses = consumer.buffers();
   EXPECT_LT(LargestJump(poses), 1.5) << "neither back to the origin nor past what it missed";
   EXPECT_GT(DistanceOf(poses.back()), 10);
-  // The worker leaves its robot to others at once.
+  // The worker gives up its robot when it stops, so that another worker can take the robot at once.
   EXPECT_EQ(second->Stop(), 0);
   const auto record = worker::ParseLeaseRecord(Record());
   ASSERT_TRUE(record && record->progress);
@@ -194,13 +197,14 @@ TEST_F(LidarWorker, WaitsForAServerThatTakesItsConnectionAndIsSilent) {
   auto worker = Worker();
   NatsPipeline other("natssrc name=n" + At() + "! fakesink name=see");
   other.Play();
-  EXPECT_NE(other.WaitForWarning("No NATS server answers"), "");  // after both gave up to connect
+  // posted after the first attempt to connect failed
+  EXPECT_NE(other.WaitForWarning("No NATS server answers"), "");
   server_.Thaw();
   const auto robot = Robot();
   EXPECT_TRUE(Eventually([&] { return !worker->Taken("r1.front").empty(); }));
 }
 
-/// A proxy without a server behind it: accepts connections, and closes them at once.
+/// A proxy without a server behind it: it accepts connections and closes them at once.
 class LoneProxy {
  public:
   LoneProxy() {
@@ -256,8 +260,8 @@ TEST_F(LidarWorker, StopsWithinASecondWhereTheServerHangs) {
     if (hangs) server_.Thaw();
     return took_s;
   };
-  // A busy machine may delay the worker. So the shortest of three times is compared with the
-  // longest time of a server that answers.
+  // A busy machine may delay the worker. Therefore the shortest of three times is compared with the
+  // longest time that the worker needs with a server that answers.
   double shortest_s = 1e9;
   double without_s = 0;
   for (int i = 0; i < 3 && shortest_s >= 1 + without_s; ++i) {
@@ -338,14 +342,15 @@ TEST_F(LidarWorker, KnowsWhereToReadFromThoughTheServerHadAPause) {
   worker::PipelineSettings settings;
   settings.connection.url = server_.url();
   settings.rewind = milliseconds(300);
-  std::this_thread::sleep_for(settings.rewind + milliseconds(100));  // nothing is stored
+  // in this time no message is stored
+  std::this_thread::sleep_for(settings.rewind + milliseconds(100));
   const std::uint64_t before = LastOf("fleet");
   sender.Hold(false);
   EXPECT_EQ(sender.WaitForEnd(), "");
   worker::Progress begin;
   begin.pose = {0, 0, 0, 0, 0, 0, 1};
   begin.stream = CreationOf("fleet");
-  begin.scan = begin.from = 2;  // after the caps
+  begin.scan = begin.from = 2;  // the message after the caps
   worker::RobotPipeline pipeline(settings, "r1.front", begin.stream, begin);
   pipeline.SetEnd(Time::max());
   pipeline.Play();
@@ -360,13 +365,14 @@ TEST_F(LidarWorker, KnowsWhereToReadFromThoughTheServerHadAPause) {
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "") << "it has the scan of the record";
 }
 
-/// A map of half a scan would fit the next scan badly.
+/// The worker must skip an incomplete first scan, because the next scan would match a map of half a
+/// scan badly.
 TEST_F(LidarWorker, BeginsItsMapWithAWholeScan) {
   NatsPipeline sender(
       "lidartestsrc model=os0-32 mode=512x10 speed=10 slices-per-scan=4 num-buffers=40 ! lidarenc "
       "effort=0" +
       kSee + "! natssink name=n sync=false subject=fleet.r1.lidar.front jetstream=fleet" + At());
-  sender.HoldFrom(36);  // before the last scan
+  sender.HoldFrom(36);  // the slice before the last scan's first
   sender.Play();
   ASSERT_TRUE(Eventually([&] { return sender.stat("messages-acknowledged") >= 36; }));
   const std::uint64_t before = LastOf("fleet");
@@ -376,7 +382,7 @@ TEST_F(LidarWorker, BeginsItsMapWithAWholeScan) {
     jsOptions options;
     jsOptions_Init(&options);
     options.Stream.Purge.Subject = "fleet.r1.lidar.front";
-    options.Stream.Purge.Sequence = 4;  // after the caps and two slices
+    options.Stream.Purge.Sequence = 4;  // removes the caps and two slices
     EXPECT_EQ(js_PurgeStream(js, "fleet", &options, nullptr), NATS_OK);
   });
   worker::PipelineSettings settings;
@@ -398,7 +404,7 @@ TEST_F(LidarWorker, BeginsItsMapWithAWholeScan) {
   EXPECT_EQ(report["lidarodometry"]["scans"], 9) << "of ten, of which the first is not whole";
 }
 
-/// The stream has one scan.
+/// The stream contains only one scan.
 TEST_F(LidarWorker, HandsOnTheVelocityOfTheRecordUnlessTheScanOfItsPoseIsMissing) {
   NatsPipeline sender(
       "lidartestsrc model=os0-32 mode=512x10 speed=10 slices-per-scan=1 num-buffers=1 ! lidarenc "
@@ -481,7 +487,7 @@ TEST_F(LidarWorker, TellsOfItsRobots) {
   EXPECT_EQ(worker.Stop(), 0);
 }
 
-/// A worker in this process, and two robots whose pipelines are slow to start.
+/// A worker that runs in this process, and two robots whose pipelines start slowly.
 class SlowRobots : public LidarWorker {
  protected:
   void SetUp() override {
@@ -493,7 +499,7 @@ class SlowRobots : public LidarWorker {
                     " jetstream=fleet subject=fleet." + std::string(robot) + ".lidar.front" + At());
     worker::WorkerSettings settings;
     settings.lease.worker = "me";
-    settings.lease.lease = std::chrono::seconds(12);  // the machine may be busy
+    settings.lease.lease = std::chrono::seconds(12);  // long, because the machine may be busy
     settings.fleet.patterns = {"r*"};
     settings.pipeline.connection.url = server_.url();
     settings.pipeline.decoder = "slowdecoder";
@@ -506,14 +512,15 @@ class SlowRobots : public LidarWorker {
     slowness.hold = false;
     worker_.reset();
   }
-  /// Runs the worker until `holds` returns true. Returns false if that takes too long.
+  /// Runs steps of the worker until `holds` returns true. Returns false if that takes too long.
   bool WorksUntil(const std::function<bool()>& holds) {
     return Eventually([&] {
       worker_->Step();
       return holds();
     });
   }
-  /// Returns the worker's numbers of robots, robots taken, robots given up, and failures.
+  /// Returns four digits: the worker's current robots, robots taken so far, robots given up, and
+  /// failures.
   std::string Figures() const {
     fleet::Exposition exposition;
     fleet::Reporter::Reports reports;
@@ -551,7 +558,7 @@ TEST_F(SlowRobots, AreHandedOverThoughTheyDoNotStop) {
   EXPECT_FALSE(slowness.gave_up) << "it did not wait for them";
   for (const std::string robot : {"r1.front", "r2.front"}) {
     EXPECT_NE(said.find(robot + ": its pipeline does not stop in time"), std::string::npos) << said;
-    // The server may store the record a little later.
+    // The server may store the record a little later than the worker prints its line.
     EXPECT_TRUE(Eventually([&] {
       const auto record = worker::ParseLeaseRecord(Newest(robot).text);
       return record && record->worker.empty();
@@ -576,14 +583,14 @@ TEST_F(SlowRobots, WhosePipelinesCannotBeMadeAreGivenUp) {
   gst_object_unref(decoder);
 }
 
-/// A consumer that is made anew numbers its entries from 1 again.
+/// The numbers of entries begin at 1 again if the watch makes its consumer anew.
 TEST_F(LidarWorker, SeesAllRecordsAgainWhereItAsksForThem) {
   std::string why;
   nats::ConnectionSettings settings;
   settings.url = server_.url();
   const auto connection = nats::Connection::Open(settings, nullptr, &why);
   ASSERT_TRUE(connection) << why;
-  PutRecord("none");  // makes the bucket, which the watch would make at the same time
+  PutRecord("none");  // makes the bucket; otherwise the watch would do it at the same time
   worker::FleetSettings fleet;
   fleet.patterns = {"r*"};
   worker::FleetWatch watch(connection.get(), fleet);
@@ -610,7 +617,7 @@ worker::WorkerSettings SettingsOf(const std::string& url) {
   return settings;
 }
 
-/// Calls `works` until it has written `text` to stderr.
+/// Calls `works` repeatedly until it has written `text` to stderr.
 ::testing::AssertionResult Warns(const std::function<void()>& works, const std::string& text) {
   std::string said;
   const bool warned = Eventually([&] {
@@ -645,7 +652,8 @@ TEST_F(LidarWorker, SaysThatThereIsNoStreamAndThatARobotHasTooManySensors) {
   EXPECT_NE(exposition.text().find("\nlidar_worker_sensors_left_out 3\n"), std::string::npos);
 }
 
-/// The worker looks for its bucket and for robots every second.
+/// The worker looks for its bucket and for robots every second, but it reports a lasting problem
+/// only once.
 TEST_F(LidarWorker, SaysOnceWhatTroublesItForALongTime) {
   server_.Start({"-js=false"});
   worker::Worker worker(SettingsOf(server_.url()));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Measures natssink and natssrc with many streams in real time: the added latency, and the
-// processor time per stream of sinks, sources and server.
+// Measures natssink and natssrc with many streams in real time: the latency that they add, and the
+// processor time per stream that the sinks, the sources and the server use.
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -26,7 +26,7 @@ double CpuSeconds(int who) {
          static_cast<double>(u.ru_utime.tv_usec + u.ru_stime.tv_usec) * 1e-6;
 }
 
-/// Ten scans of an OS1-64, coded.
+/// Ten coded scans of an OS1-64.
 struct Slices {
   gst::CapsPtr caps;
   std::vector<gst::BufferPtr> buffers;
@@ -59,7 +59,7 @@ Slices Encode() {
 struct Options {
   int streams = 1;
   int seconds = 10;
-  std::string stored;  // properties of both ends
+  std::string stored;  // further properties of both elements
   std::string url;
   std::string Subject(int stream) const {
     return " url=" + url + " subject=bench.s" + std::to_string(stream) + " " + stored;
@@ -72,11 +72,12 @@ gst::ElementPtr Launch(const std::string& description) {
   return pipeline;
 }
 
-/// Runs in its own process: receives the streams, and prints latency and processor time.
+/// Receives the streams and prints the latency and the processor time. Runs in a process of its
+/// own.
 void Receive(const Options& o, std::size_t expected, int ready_fd) {
   struct Latencies {
     std::mutex mutex;
-    guint64 count_from = 0;  // messages sent earlier do not count
+    guint64 count_from = 0;  // only messages that were sent at this time or later count
     std::size_t received = 0;
     std::vector<double> ms;
   } latencies;
@@ -121,7 +122,7 @@ void Receive(const Options& o, std::size_t expected, int ready_fd) {
   std::fflush(stdout);
 }
 
-/// Pushes each slice of each stream when it is due.
+/// Pushes each slice of each stream at its time.
 void Send(const Options& o, const Slices& slices) {
   std::vector<Harness> sinks;
   const gst::StringPtr caps(gst_caps_to_string(slices.caps.get()));
@@ -145,7 +146,7 @@ void Send(const Options& o, const Slices& slices) {
   std::printf("natssink  %.2f %% of a core for each stream\n", 100 * cpu / o.seconds / o.streams);
 }
 
-/// Makes one stream for all senders, as lidar-edge does.
+/// Makes one JetStream stream for all senders, as lidar-edge does.
 bool MakeStream(const std::string& url) {
   natsConnection* nc = nullptr;
   if (natsConnection_ConnectTo(&nc, url.c_str()) != NATS_OK) return false;
@@ -159,7 +160,7 @@ bool MakeStream(const std::string& url) {
   return made;
 }
 
-/// Starts the receiver in its own process, before this process has threads.
+/// Starts the receiver in a process of its own. This must happen before this process has threads.
 int Measure(Options o, const NatsServer& server) {
   const auto expected = static_cast<std::size_t>(o.streams * o.seconds * kSlicesPerSecond);
   int ready[2];

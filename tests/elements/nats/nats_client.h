@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A connection of the test itself, which waits for a server that is frozen.
+// A client that the test itself uses. Its calls wait even while the server is frozen.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -37,7 +37,7 @@ class NatsClient {
 
   natsConnection* get() const { return nc_; }
   jsCtx* js() const { return js_.get(); }
-  /// The server has the subscription when this returns.
+  /// Subscribes to `subject`, and returns when the server has the subscription.
   nats::SubscriptionPtr Subscribe(const std::string& subject) const {
     natsSubscription* raw = nullptr;
     EXPECT_EQ(natsConnection_SubscribeSync(&raw, nc_, subject.c_str()), NATS_OK);

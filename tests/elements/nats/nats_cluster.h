@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A cluster of three nats-servers, which share their streams.
+// A cluster of three nats-servers with replicated streams.
 #pragma once
 #include <memory>
 #include <string>
@@ -14,7 +14,8 @@ namespace lidar::test {
 
 constexpr std::size_t kServers = 3;
 
-/// Waits until `holds` returns true, for longer than Eventually(): clusters are slow.
+/// Waits until `holds` returns true. Waits up to twice as long as Eventually(), because clusters
+/// are slow.
 inline bool WaitFor(const std::function<bool()>& holds) {
   return Eventually(holds) || Eventually(holds);
 }
@@ -46,7 +47,8 @@ class Cluster {
   }
   NatsServer& server(std::size_t i) { return servers_[i]; }
   jsCtx* js() { return js_.get(); }
-  /// Returns the leader of a stream; empty if it has none, or if a copy is missing or incomplete.
+  /// Returns the name of the stream's leader, or an empty string if the stream has no leader or if
+  /// a replica is missing or incomplete.
   std::string LeaderOf(const char* stream) {
     jsStreamInfo* raw = nullptr;
     if (js_GetStreamInfo(&raw, js_.get(), stream, nullptr, nullptr) != NATS_OK) return "";

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Garbage from the network, wrong settings, and servers that want credentials.
+// Tests of natssink and natssrc with invalid messages, wrong settings, and servers that need
+// credentials.
 #include <cstdlib>
 #include <map>
 
@@ -95,7 +96,7 @@ TEST_F(NatsErrors, WhatIsLeftOutIsNotCountedAsLostAndLeavesAMarkedGap) {
   };
   const char* const kImu = "application/x-imu, sample-size=(int)32";
   publish(kImu, "1 0");
-  publish("application/x-imu, sample-size=(int)1", "1 1");  // its caps never come
+  publish("application/x-imu, sample-size=(int)1", "1 1");  // these caps are never published
   publish(kImu, "1 2");
   publish("application/x-voxels, alignment=(string)slice", "1 3");
   publish(kImu, "1 4");
@@ -121,7 +122,7 @@ TEST_F(NatsErrors, ABufferOfAnotherSizeThanItsCapsSayIsCounted) {
   EXPECT_EQ(clouds.WaitForEnd(), "");
   ASSERT_TRUE(receiver.WaitForBuffers(2));
   Stranger stranger(server_.url());
-  // Sends a cut cloud with the caps of the clouds.
+  // Publishes a cloud that was cut off, with the caps of whole clouds.
   std::string why;
   const gst::CapsPtr caps(gst_caps_from_string(clouds.caps().c_str()));
   const auto format = nats::StreamFormat::FromCaps(caps.get(), &why);
@@ -181,7 +182,8 @@ TEST_F(NatsErrors, AServerThatIsNotThereIsToldOfByBothEnds) {
   }
 }
 
-/// This happens to a robot that starts in a gap of its link: libnats does not connect again itself.
+/// A robot may start while its link is interrupted. In this case libnats itself does not connect
+/// again.
 TEST_F(NatsErrors, AServerThatTakesConnectionsAndIsSilentIsTriedAgain) {
   server_.Start();
   server_.Freeze();
@@ -282,7 +284,7 @@ TEST_F(NatsErrors, CredentialsAreTakenFromAFile) {
   }
 }
 
-/// Makes a self-signed certificate for 127.0.0.1, as NAME.pem and NAME-key.pem.
+/// Makes a self-signed certificate for 127.0.0.1: the files NAME.pem and NAME-key.pem.
 bool MakeCertificate(const std::string& folder, const std::string& name) {
   const std::string make =
       "cd " + folder +
@@ -294,11 +296,12 @@ bool MakeCertificate(const std::string& folder, const std::string& name) {
 
 TEST_F(NatsErrors, AnAddressWithTlsMeansTls) {
   server_.Start();
-  // A connection without TLS would succeed. One tls:// address of several is enough to demand TLS.
+  // A connection without TLS would succeed, but it must not be used: a single tls:// address in the
+  // list is enough to require TLS.
   for (const std::string& url : {server_.url("tls"), server_.url() + "," + server_.url("tls")}) {
     NatsPipeline wary("natssrc name=n url=" + url + " ! fakesink name=see sync=false");
     wary.Play();
-    PublishSlices(8, At());  // newer versions of libnats try again, older ones give up
+    PublishSlices(8, At());  // newer versions of libnats try again, older versions give up
     EXPECT_EQ(wary.stat("connected"), 0U) << url;
     EXPECT_TRUE(wary.buffers().empty()) << url;
   }
@@ -308,7 +311,7 @@ TEST_F(NatsErrors, CertificatesMeanTls) {
   const std::string own = server_.folder() + "/own";
   if (!MakeCertificate(server_.folder(), "own")) GTEST_SKIP() << "openssl is not installed";
   server_.Start();
-  // A connection without TLS would succeed.
+  // A connection without TLS would succeed, but the files require TLS.
   for (const std::string& files :
        {"tls-ca-file=" + own + ".pem",
         "tls-cert-file=" + own + ".pem tls-key-file=" + own + "-key.pem"}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Streams that JetStream stores: replays, durable consumers, a server that dies.
+// Tests of streams that JetStream stores: replays, durable consumers, and servers that are killed.
 #include "ext/nats/jetstream.h"
 
 #include <algorithm>
@@ -26,7 +26,7 @@ class NatsJetStream : public NatsTest {
     NatsTest::SetUp();
     if (!IsSkipped()) server_.Start();
   }
-  /// Returns what JetStream has from `start` on.
+  /// Replays the stored stream from the time `start` on, and returns the buffers.
   std::vector<Kept> Replay(guint64 start, const std::string& more = "") {
     NatsPipeline player("natssrc name=n eos-at-end=true start-time=" + std::to_string(start) +
                         At(kBox + " " + more) + "! fakesink name=see sync=false");
@@ -38,10 +38,10 @@ class NatsJetStream : public NatsTest {
     return player.buffers();
   }
 
-  std::string caps_;  // of the last Replay()
+  std::string caps_;  // of the stream that Replay() read last
 };
 
-/// A durable consumer of r1.front that another program has made.
+/// A durable consumer of r1.front. Another program made it before natssrc uses it.
 class DurableConsumer {
  public:
   DurableConsumer(const std::string& url, std::int64_t ack_wait_ns, std::int64_t max_pending)
@@ -56,11 +56,12 @@ class DurableConsumer {
     config.MaxAckPending = max_pending;
     EXPECT_EQ(js_AddConsumer(nullptr, client_.js(), "box", &config, nullptr, nullptr), NATS_OK);
   }
-  /// Returns the number of unacknowledged messages that were sent more than once.
+  /// Returns the number of unacknowledged messages that the server has sent more than once.
   std::int64_t again() const { return Info()->NumRedelivered; }
-  /// Returns the number of unacknowledged messages that were sent.
+  /// Returns the number of unacknowledged messages that the server has sent.
   std::int64_t unacknowledged() const { return Info()->NumAckPending; }
-  /// Returns the number of unacknowledged messages, sent or not.
+  /// Returns the number of unacknowledged messages, including those that the server has not sent
+  /// yet.
   std::uint64_t open() const {
     const auto info = Info();
     return info->NumPending + static_cast<std::uint64_t>(info->NumAckPending);
@@ -76,7 +77,8 @@ class DurableConsumer {
   const NatsClient client_;
 };
 
-/// Reads the past of the source `n` to its end, in pieces of `most_bytes`.
+/// Sends history queries to the source `n` until it has answered with everything up to the end.
+/// Each answer has at most `question.most_bytes` bytes.
 std::vector<Kept> AskForHistory(const NatsPipeline& receiver, gst::HistoryQuestion question,
                                 gst::HistoryAnswer* last) {
   const gst::PadPtr pad(gst_element_get_static_pad(receiver.nats(), "src"));
@@ -93,7 +95,8 @@ std::vector<Kept> AskForHistory(const NatsPipeline& receiver, gst::HistoryQuesti
   return out;
 }
 
-/// Holds `receiver` until messages are sent again. Returns true if it then acknowledges all.
+/// Blocks the buffers of `receiver` until the server sends messages again, then unblocks them.
+/// Returns true if `receiver` then acknowledges all messages.
 bool TakesAllAfterItWasSentAgain(const DurableConsumer& consumer, NatsPipeline* receiver) {
   receiver->Hold(true);
   receiver->Play();
@@ -102,7 +105,7 @@ bool TakesAllAfterItWasSentAgain(const DurableConsumer& consumer, NatsPipeline* 
   return sent_again && Eventually([&] { return consumer.open() == 0; });
 }
 
-/// Publishes caps that no other message has, and a message with these caps.
+/// Publishes caps that are unique for each `number`, and a message with these caps.
 void PutInOwnCaps(const NatsClient& client, int number) {
   const gst::CapsPtr caps(gst_caps_from_string(
       (GST_LIDAR_IMU_MEDIA_TYPE ", sample-size=(int)32, number=(int)" + std::to_string(number))
@@ -149,7 +152,7 @@ TEST_F(NatsJetStream, AReplayBeginsEarlyInASecondAsWell) {
   ExpectSameStream(played, second);
 }
 
-/// Returns the time at which the server stored the last message [ns since 1970].
+/// Returns the time at which the server stored the last message of r1.front [ns since 1970].
 guint64 LastStored(const NatsClient& client) {
   natsMsg* raw = nullptr;
   EXPECT_EQ(js_GetLastMsg(&raw, client.js(), "box", "r1.front", nullptr, nullptr), NATS_OK);
@@ -157,7 +160,8 @@ guint64 LastStored(const NatsClient& client) {
   return message ? static_cast<guint64>(natsMsg_GetTime(raw)) : 0;
 }
 
-/// libnats asks for the whole second if a time is early in it, so natssrc drops earlier messages.
+/// If a time is early in its second, libnats can only ask for messages from the whole second on.
+/// Therefore natssrc itself drops the messages before that time.
 TEST_F(NatsJetStream, AReplayEndsWhereAllMessagesAreBeforeItsTime) {
   const NatsClient client(server_.url());
   std::string why;
@@ -177,14 +181,14 @@ TEST_F(NatsJetStream, AReplayEndsWhereAllMessagesAreBeforeItsTime) {
 
 TEST_F(NatsJetStream, AReplayBeginsAtItsNumber) {
   const auto sent = PublishSlices(16, At(kBox));
-  // The first message of the stream is the caps.
+  // The first message of the stream has the caps, so message 6 is the slice with index 4.
   ExpectSameStream(Replay(0, "start-sequence=6"), {sent.begin() + 4, sent.end()});
   EXPECT_EQ(Replay(0, "start-sequence=900").size(), 0U);
   const auto later = static_cast<guint64>(g_get_real_time()) * 1000 + 3600 * GST_SECOND;
   ExpectSameStream(Replay(later, "start-sequence=6"), {sent.begin() + 4, sent.end()});
 }
 
-/// Publishes `count` messages, each with caps that no other message has.
+/// Publishes `count` messages, each with its own caps.
 void FillWithOwnCaps(const NatsServer& server, int count) {
   const NatsClient client(server.url());
   std::string why;
@@ -194,7 +198,7 @@ void FillWithOwnCaps(const NatsServer& server, int count) {
   for (int i = 0; i < count; ++i) PutInOwnCaps(client, i);
 }
 
-constexpr int kManyFormats = 20;  // more than a source stores at a time
+constexpr int kManyFormats = 20;  // more formats than a source stores
 
 TEST_F(NatsJetStream, AStreamOfManyFormatsIsReplayedWhole) {
   FillWithOwnCaps(server_, kManyFormats);
@@ -240,8 +244,8 @@ TEST_F(NatsJetStream, NothingIsLostWhereTheServerIsKilledMeanwhile) {
   ExpectSameStream(Replay(0), sent);
 }
 
-/// The sink waits five seconds for an acknowledgement. Meanwhile it sends messages and caps until
-/// 256 of them are unacknowledged, which takes three seconds here.
+/// The sink waits five seconds for an acknowledgement. During this time it sends messages and caps
+/// until 256 of them are unacknowledged, which takes three seconds here.
 TEST_F(NatsJetStream, GoesOnWhereCapsWereNeverAnswered) {
   NatsPipeline sender(kLive + "! lidarenc" + kSee + "! natssink name=n" + At(kBox));
   sender.Play();
@@ -249,7 +253,7 @@ TEST_F(NatsJetStream, GoesOnWhereCapsWereNeverAnswered) {
   server_.Freeze();
   const gint64 late = g_get_monotonic_time() + 10 * G_USEC_PER_SEC;
   ASSERT_TRUE(Eventually([&] { return g_get_monotonic_time() > late; }));
-  server_.Kill();  // loses the latest messages, too
+  server_.Kill();  // the server also loses the messages that it stored last
   server_.Restart();
   const guint64 before = sender.stat("messages-acknowledged");
   EXPECT_TRUE(Eventually([&] { return sender.stat("messages-acknowledged") >= before + 100; }));
@@ -267,7 +271,8 @@ TEST_F(NatsJetStream, ADurableConsumerGoesOnWhereTheLastOneEnded) {
   }
   NatsPipeline second("natssrc name=n durable=slam" + At(kBox) + "! fakesink name=see sync=false");
   second.Play();
-  // Messages that the first natssrc took but did not acknowledge come again later.
+  // The server sends messages again if the first natssrc received them but did not acknowledge
+  // them.
   const auto has_all = [&] {
     auto seen = all;
     for (const Kept& kept : second.buffers()) seen.push_back(kept);
@@ -279,7 +284,8 @@ TEST_F(NatsJetStream, ADurableConsumerGoesOnWhereTheLastOneEnded) {
   EXPECT_LE(second.count(), 64U - 28U);
 }
 
-/// Reads what is left for the durable consumer, to the end of the stream.
+/// Reads all messages that the durable consumer "slam" has not acknowledged, until the end of the
+/// stream.
 std::vector<Kept> TakeRest(const std::string& at) {
   NatsPipeline rest("natssrc name=n durable=slam start-time=0 eos-at-end=true" + at +
                     "! fakesink name=see sync=false");
@@ -291,7 +297,8 @@ std::vector<Kept> TakeRest(const std::string& at) {
 TEST_F(NatsJetStream, ADurableConsumerBeginsAtTheTimeAndNumberThatItWasMadeWith) {
   PublishSlices(8, At(kBox));
   guint64 between = 0;
-  ASSERT_TRUE(Eventually([&] {  // libnats asks for the whole second at earlier times
+  // Waits, because early in a second libnats would ask for messages from the whole second on.
+  ASSERT_TRUE(Eventually([&] {
     between = static_cast<guint64>(g_get_real_time()) * 1000;
     return between % GST_SECOND > 100 * GST_MSECOND;
   }));
@@ -304,7 +311,8 @@ TEST_F(NatsJetStream, ADurableConsumerBeginsAtTheTimeAndNumberThatItWasMadeWith)
     return source.buffers();
   };
   ExpectSameStream(takes("durable=slam start-time=" + std::to_string(between)), second);
-  // Each sender puts its caps before its eight slices.
+  // Each of the two senders publishes its caps before its eight slices, so message 13 is the slice
+  // with index 2 of the second sender.
   ExpectSameStream(takes("durable=other start-sequence=13"), {second.begin() + 2, second.end()});
 }
 
@@ -399,7 +407,7 @@ TEST_F(NatsJetStream, WorkersOfAGroupShareADurableConsumer) {
   ASSERT_TRUE(a.WaitForBuffers(8));
   b.Play();
   ASSERT_TRUE(Eventually([&] { return b.stat("connected") == 1; }));
-  // The second natssrc gets its share once the server has its subscription.
+  // The second natssrc receives some of the messages once the server has its subscription.
   ASSERT_TRUE(Eventually([&] {
     PublishSlices(8, At(kBox));
     return b.count() > 0;
@@ -446,8 +454,8 @@ TEST_F(NatsJetStream, ASourceBeginsAnotherStreamOfTheSameNameAtItsFirstMessage) 
   ExpectSameStream({got.begin() + 80, got.end()}, sent);
 }
 
-/// Puts another consumer in the place of the source's own, which begins with the next message and
-/// counts from 1.
+/// Replaces the source's own consumer by another one. The new consumer begins with the next message
+/// and counts its messages from 1.
 void ReplaceConsumer(const NatsClient& client) {
   jsConsumerInfoList* raw = nullptr;
   ASSERT_EQ(js_Consumers(&raw, client.js(), "box", nullptr, nullptr), NATS_OK);
@@ -515,7 +523,7 @@ TEST_F(NatsJetStream, ASinkWhoseStreamIsDeletedSaysSoAndMakesItAnew) {
   ExpectSameStream(kept, {sent.end() - static_cast<std::ptrdiff_t>(kept.size()), sent.end()});
 }
 
-/// Makes the stream "box", which takes no message larger than `most` bytes.
+/// Makes the stream "box". The stream refuses messages larger than `most` bytes.
 void MakeBoxForSmallMessages(const std::string& url, std::int32_t most) {
   const NatsClient client(url);
   const char* subjects[] = {"r1.front", "r1.front.config.*"};
@@ -581,8 +589,9 @@ TEST_F(NatsJetStream, ManyThatBeginAtOnceShareABox) {
     EXPECT_EQ(sender->stat("messages-acknowledged"), 16U);
     EXPECT_EQ(sender->stat("messages-dropped"), 0U);
   }
-  // A sink that adds its subject may remove one that another sink has just added. The stream then
-  // refuses messages of the other sink, which sends them again after later ones.
+  // Two sinks may add their subjects to the stream at the same time, and one may remove the subject
+  // that the other has just added. The stream then refuses messages of that other sink. The sink
+  // sends them again, after later messages.
   std::vector<Kept> played = Replay(0);
   std::stable_sort(played.begin(), played.end(), [](const Kept& a, const Kept& b) {
     return std::pair(a.slice.scan_id, a.slice.slice_index) <
@@ -608,8 +617,10 @@ TEST_F(NatsJetStream, AStreamThatAnswersForTheServerIsToldOf) {
   const NatsClient client(server_.url());
   std::string why;
   const bool made = nats::EnsureStream(client.js(), {"all", {}, 0, 1, ""}, {"*.>"}, &why);
-  EXPECT_TRUE(made || why.find("no-ack") != std::string::npos) << why;  // newer servers refuse it
-  // The server and the stream both answer, and EnsureStream() gets the first answer.
+  // Newer servers refuse such a stream.
+  EXPECT_TRUE(made || why.find("no-ack") != std::string::npos) << why;
+  // The server and the stream both answer the request. EnsureStream() reads only the first answer,
+  // so several tries may be needed.
   bool told = !made;
   for (int i = 0; i < 500 && !told; ++i)
     told = !nats::EnsureStream(client.js(), {"all", {}, 0, 1, ""}, {"*.>"}, &why);
@@ -660,8 +671,8 @@ TEST_F(NatsJetStream, TellsALiveStreamsPastPieceByPiece) {
   EXPECT_EQ(last.from, sent.front().capture_time);
   EXPECT_EQ(last.to, sent.back().capture_time);
   EXPECT_EQ(last.damaged, 0U);
-  // The first slice may be up to a second earlier than `half`, because the source asks for the
-  // whole second.
+  // The source asks the server for messages from a whole second on. Therefore the first slice may
+  // be up to a second earlier than `half`.
   const GstClockTime half = sent[150].capture_time;
   const auto later = AskForHistory(receiver, {half, 0, 100'000}, &last);
   ASSERT_FALSE(later.empty());
@@ -671,7 +682,7 @@ TEST_F(NatsJetStream, TellsALiveStreamsPastPieceByPiece) {
   EXPECT_TRUE(last.ended);
 }
 
-/// docs/fleet.md lists these permissions.
+/// These are the permissions that docs/fleet.md lists.
 TEST_F(NatsJetStream, AReceiverNeedsTheRightsOfItsStreamAlone) {
   std::ofstream(server_.folder() + "/conf") << R"(authorization { users = [
     { user: edge, password: pw },

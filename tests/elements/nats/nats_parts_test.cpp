@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The parts of the plugin that need no server.
+// Tests of the parts of the NATS plugin that need no server.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -37,7 +37,7 @@ class NatsParts : public ::testing::Test {
  protected:
   void SetUp() override {
     gst_lidar_init();
-    nats_Open(-1);  // otherwise the first connection would do it
+    nats_Open(-1);  // the first connection would do this otherwise
   }
 };
 
@@ -122,7 +122,8 @@ TEST_F(NatsParts, ABareBufferComesBackBare) {
   EXPECT_EQ(GST_BUFFER_DURATION(read->buffer.get()), GST_CLOCK_TIME_NONE);
 }
 
-const std::string kZeros = " 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0";  // a covariance
+// A covariance whose numbers are all 0.
+const std::string kZeros = " 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0";
 
 struct BadHeader {
   const char* name;
@@ -254,7 +255,8 @@ TEST_F(NatsParts, ACoderThatNobodyHereKnowsHasAFormat) {
   const auto back = StreamFormat::FromText(text);
   ASSERT_TRUE(back);
   EXPECT_TRUE(gst_caps_is_equal(back->caps(), format->caps()));
-  EXPECT_FALSE(FormatOf("application/x-voxels, levels=(uint)7", &why));  // no alignment=slice
+  // the caps have no alignment=slice
+  EXPECT_FALSE(FormatOf("application/x-voxels, levels=(uint)7", &why));
   EXPECT_FALSE(FormatOf("application/x-voxels, alignment=slice, levels=(uint)<1,2>", &why));
   EXPECT_EQ(why,
             "the field levels is not a string, number, fraction, flag, buffer or array of doubles");
@@ -262,7 +264,8 @@ TEST_F(NatsParts, ACoderThatNobodyHereKnowsHasAFormat) {
 
 TEST_F(NatsParts, NestedTextIsRefusedAtOnce) {
   std::string text = std::string(kSliceCaps) + ", a=";
-  while (text.size() < 569) text += "[[ a, b={";  // each level doubles the parser's time
+  // each level doubles the time of GStreamer's parser
+  while (text.size() < 569) text += "[[ a, b={";
   FormatBook book;
   book.Note("a.config.0000000000000000", text);
   EXPECT_EQ(book.damaged(), 1U);
@@ -282,7 +285,7 @@ TEST_F(NatsParts, TheBookKeepsTheNewestFormatsAndCountsWhatIsDamaged) {
   EXPECT_EQ(book.damaged(), 0U);
   EXPECT_TRUE(book.Find(ids.back()));
   EXPECT_FALSE(book.Find(ids.front()));
-  book.Note("a.config." + ids.front(), "application/x-odometry");  // the id of other caps
+  book.Note("a.config." + ids.front(), "application/x-odometry");  // the id belongs to other caps
   book.Note("a.config.*", kSliceCaps);
   book.Note("", "");
   EXPECT_EQ(book.damaged(), 3U);
@@ -299,7 +302,7 @@ TEST_F(NatsParts, TheOutboxDropsTheOldestThatWait) {
   EXPECT_EQ(box.Take({})->number, dropped);
   EXPECT_EQ(box.Push(Item(20, 1'000'000)), box.in_flight() == 1 ? 21 - dropped - 1 : 0U);
   EXPECT_EQ(box.waiting(), 0U);
-  EXPECT_EQ(box.in_flight(), 1U);  // messages in flight stay
+  EXPECT_EQ(box.in_flight(), 1U);  // messages in flight are not dropped
 }
 
 TEST_F(NatsParts, TheOutboxCountsTheFormatsOfWhatWaits) {
@@ -331,7 +334,7 @@ TEST_F(NatsParts, TheOutboxSendsAgainInOrder) {
   for (int i = 0; i < 4; ++i) box.Take({});
   EXPECT_TRUE(box.Remove(1));
   EXPECT_FALSE(box.Remove(1));
-  EXPECT_FALSE(box.Remove(5));  // never sent
+  EXPECT_FALSE(box.Remove(5));  // no message 5 was sent
   EXPECT_EQ(box.RetryAll(), 3U);
   EXPECT_FALSE(box.OldestInFlight());
   std::vector<std::uint64_t> order;
@@ -341,7 +344,8 @@ TEST_F(NatsParts, TheOutboxSendsAgainInOrder) {
   EXPECT_EQ(box.bytes(), 0U);
 }
 
-/// A sink and a server that acknowledges, refuses and falls silent at random.
+/// Compares the outbox with a simple model. At random, the sink sends a message, or the server
+/// acknowledges one, or the server refuses one or does not answer.
 TEST_F(NatsParts, TheOutboxKnowsOfEachMessageWhereItIsAndSinceWhen) {
   using Time = Outbox::Clock::time_point;
   std::vector<StreamFormat::Ptr> formats;
@@ -402,7 +406,7 @@ TEST_F(NatsParts, TheOutboxKnowsOfEachMessageWhereItIsAndSinceWhen) {
   }
 }
 
-/// Numbers in any order, some twice.
+/// Notes numbers in random order. Some numbers repeat.
 TEST_F(NatsParts, ABookOfPlacesCountsAGapAsOftenAsItIsFilled) {
   std::mt19937 random(5);
   PlaceBook book;
@@ -448,7 +452,8 @@ TEST_F(NatsParts, ABookOfPlacesKnowsWhatCameAndWhatIsMissing) {
 
 TEST_F(NatsParts, ABookOfPlacesIsBounded) {
   PlaceBook book;
-  for (std::uint64_t n = 0; n < 100'000; n += 2) book.Note({1, n});  // a gap after each
+  // leaves a gap after each number
+  for (std::uint64_t n = 0; n < 100'000; n += 2) book.Note({1, n});
   EXPECT_TRUE(book.Note({1, 99'998}).again);
   EXPECT_FALSE(book.Note({1, 0}).again) << "forgotten";
   for (std::uint64_t run = 2; run < 1'000; ++run) book.Note({run, 1});
@@ -469,7 +474,7 @@ TEST_F(NatsParts, APatternCoversWhatItsWildcardsSay) {
   EXPECT_FALSE(Covers("a.*", "a.>"));
 }
 
-/// Compares all patterns and subjects of up to three words.
+/// Compares Covers() with a regular expression for all patterns and subjects of up to three words.
 TEST_F(NatsParts, APatternCoversASubjectAsARegularExpressionDoes) {
   std::vector<std::string> subjects;
   std::vector<std::string> patterns;
@@ -559,7 +564,8 @@ TEST(NatsUrls, AreShownWithoutTheirUsers) {
   EXPECT_EQ(WithoutUser("me:secret@host"), "host");
 }
 
-/// A watch posts a connection's changes and errors on the bus of its element.
+/// A fixture with a ConnectionWatch. The watch posts changes and errors of a connection on the bus
+/// of its element.
 class NatsWatch : public NatsParts {
  protected:
   void Make(bool keeps_trying) {
@@ -567,7 +573,7 @@ class NatsWatch : public NatsParts {
     bus_.emplace(element_.get());
     watch_.emplace(element_.get(), keeps_trying);
   }
-  /// Passes the state to the watch, and returns what the watch posts.
+  /// Passes `state_` to the watch, and returns the messages that the watch posts.
   std::string Posted() {
     watch_->Note(state_);
     std::string posted;
@@ -657,7 +663,7 @@ TEST_F(NatsWatch, TellsOfARefusalAsAnErrorOrOfEachAsAWarning) {
                   : "error: The NATS server refused the connection: Authorization Violation.");
     EXPECT_EQ(Posted(), "");
     if (!keeps_trying) continue;
-    state_ = {};  // of the next connection
+    state_ = {};  // the state of the next connection
     state_.connections = 1;
     EXPECT_EQ(Posted(), "here");
     state_.closed = true;

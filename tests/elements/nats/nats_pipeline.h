@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Pipelines with a natssrc or natssink, which keep their buffers.
+// Pipelines with a natssrc or natssink. They store the buffers that pass.
 #pragma once
 #include <algorithm>
 #include <atomic>
@@ -19,7 +19,8 @@ inline std::size_t CountWith(const std::string& part, const std::vector<std::str
                     [&](const std::string& text) { return text.find(part) != text.npos; }));
 }
 
-/// A pipeline whose natssrc or natssink is named `n`. Buffers that pass the element `see` are kept.
+/// A pipeline with a natssrc or natssink named `n`. Stores the buffers that arrive at the element
+/// `see`.
 class NatsPipeline {
  public:
   explicit NatsPipeline(const std::string& description) {
@@ -35,7 +36,7 @@ class NatsPipeline {
   }
   ~NatsPipeline() { Stop(); }
 
-  /// Returns false if the pipeline cannot start.
+  /// Starts the pipeline. Returns false if it cannot start.
   bool Play() {
     return gst_element_set_state(pipeline_.get(), GST_STATE_PLAYING) != GST_STATE_CHANGE_FAILURE;
   }
@@ -43,25 +44,26 @@ class NatsPipeline {
     Hold(false);
     gst_element_set_state(pipeline_.get(), GST_STATE_NULL);
   }
-  /// Hold(true) blocks the next buffer at the pad of `see` until Hold(false).
+  /// Hold(true) blocks the next buffer at the sink pad of `see` until Hold(false) is called.
   void Hold(bool on) {
     hold_from_ = SIZE_MAX;
     held_ = on;
   }
-  /// Returns true while a buffer is blocked.
+  /// Returns true while Hold() blocks a buffer.
   bool holds() const { return holds_; }
-  /// As Hold(true), once `count` buffers have passed.
+  /// Blocks the next buffer, as Hold(true) does, once `count` buffers have passed.
   void HoldFrom(std::size_t count) { hold_from_ = count; }
-  /// Ends a live source.
+  /// Sends EOS to a live source.
   void SendEos() { gst_element_send_event(pipeline_.get(), gst_event_new_eos()); }
-  /// Returns the text of the error; empty at EOS.
+  /// Waits for EOS or an error. Returns the text of the error, or an empty string at EOS.
   std::string WaitForEnd() {
     const gst::MessagePtr message = bus_->Wait(GST_MESSAGE_EOS | GST_MESSAGE_ERROR);
     if (!message) return "nothing happens";
     if (GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_EOS) return "";
     return MessageText(message.get());
   }
-  /// Returns the text of the next warning with `part` in it. A busy machine may cause others.
+  /// Returns the text of the next warning that contains `part`. Ignores other warnings, because
+  /// they may occur on a busy machine.
   std::string WaitForWarning(const std::string& part) {
     while (const gst::MessagePtr message = bus_->Wait(GST_MESSAGE_WARNING)) {
       const std::string text = MessageText(message.get());
@@ -70,7 +72,7 @@ class NatsPipeline {
     return "";
   }
 
-  /// Returns the number of warnings with `part` in them since the last call.
+  /// Returns the number of warnings since the last call whose text contains `part`.
   std::size_t Warnings(const std::string& part) {
     return CountWith(part, bus_->Texts(GST_MESSAGE_WARNING));
   }
@@ -93,7 +95,7 @@ class NatsPipeline {
     const gst::StringPtr text(caps ? gst_caps_to_string(caps.get()) : nullptr);
     return text ? text.get() : "";
   }
-  /// Returns a counter or a flag of `n`.
+  /// Returns the value of a counter or a flag in the statistics of `n`.
   guint64 stat(const char* name) const { return StatOf(nats_.get(), name); }
   GstElement* nats() const { return nats_.get(); }
 
@@ -126,10 +128,10 @@ class NatsPipeline {
 inline const std::string kLive = "lidartestsrc is-live=true model=os1-32 mode=512x10 ";
 inline const std::string kQuick = "lidartestsrc model=os1-32 mode=512x10 ";
 inline const std::string kSee = " ! identity name=see ";
-/// The longest timeout: EOS waits for a server that is frozen.
+/// The maximum drain-timeout. With it, EOS waits even for a server that is frozen.
 inline const std::string kPatientDrain = " drain-timeout=60000000000 ";
 
-/// Publishes `count` coded slices, waits until the server has them, and returns them.
+/// Publishes `count` coded slices and waits until the server has received them. Returns the slices.
 inline std::vector<Kept> PublishSlices(int count, const std::string& where) {
   NatsPipeline sender(kQuick + "num-buffers=" + std::to_string(count) + " ! lidarenc" + kSee +
                       "! natssink name=n sync=false" + kPatientDrain + where);
@@ -138,8 +140,8 @@ inline std::vector<Kept> PublishSlices(int count, const std::string& where) {
   return sender.buffers();
 }
 
-/// Plays a natssrc that subscribes to its subject. Returns once the server has the subscription, so
-/// that no later message is missed.
+/// Plays a natssrc and waits until the server has its subscription. The natssrc receives every
+/// message that is published later.
 inline void Listen(const NatsServer& server, NatsPipeline* receiver) {
   gchar* raw = nullptr;
   g_object_get(receiver->nats(), "subject", &raw, nullptr);

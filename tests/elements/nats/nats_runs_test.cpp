@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Counts and warnings of natssink and natssrc: counts are exact, a warning comes once for each
-// fault, and each run begins anew.
+// Tests of the statistics and warnings of natssink and natssrc. The counts are exact, each fault
+// causes one warning, and each run begins with new counts.
 #include <gst/check/gstharness.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ std::string StatsText(GstElement* element) {
   return text.get();
 }
 
-/// A natssink to which the test pushes samples of an IMU.
+/// A natssink to which the test pushes IMU samples.
 class Feeder {
  public:
   explicit Feeder(const std::string& properties)
@@ -38,7 +38,7 @@ class Feeder {
     if (GST_CLOCK_TIME_IS_VALID(captured)) gst_lidar_buffer_set_capture_time(buffer, captured);
     EXPECT_EQ(gst_harness_push(h_.get(), buffer), GST_FLOW_OK);
   }
-  /// Returns once the server has all messages, or after drain-timeout.
+  /// Sends EOS. Returns once the server has all messages, or after drain-timeout.
   void End() { gst_harness_push_event(h_.get(), gst_event_new_eos()); }
   void Stop() { gst_element_set_state(sink_.get(), GST_STATE_NULL); }
   void PlayAgain() {
@@ -50,7 +50,7 @@ class Feeder {
   }
   guint64 stat(const char* name) const { return StatOf(sink_.get(), name); }
   std::string stats() const { return StatsText(sink_.get()); }
-  /// Returns the number of warnings with `part` in them since the last call.
+  /// Returns the number of warnings since the last call whose text contains `part`.
   std::size_t Warnings(const std::string& part) {
     return CountWith(part, bus_.Texts(GST_MESSAGE_WARNING));
   }
@@ -72,7 +72,8 @@ class NatsRuns : public NatsTest {
     imu_ = nats::StreamFormat::FromCaps(caps.get(), &why);
     ASSERT_TRUE(imu_) << why;
   }
-  /// Publishes a message like those of natssink.
+  /// Publishes a message that looks like one of natssink. `place` is its run and its number in the
+  /// run.
   void Publish(Stranger* stranger, const char* subject, const std::string& place,
                std::size_t bytes = 32) const {
     stranger->Publish(subject, std::string(bytes, 'x'),
@@ -108,7 +109,8 @@ TEST_F(NatsRuns, OfASinkCountAlikeAndItsCountsStayAfterTheStop) {
   }
 }
 
-/// Returns how many messages of the subject `counted` come before one of the subject `last`.
+/// Returns the number of messages with the subject `counted` before the first message with the
+/// subject `last`.
 int CountBefore(const std::string& last, natsSubscription* all, const std::string& counted) {
   for (int count = 0;;) {
     natsMsg* raw = nullptr;
@@ -127,7 +129,8 @@ TEST_F(NatsRuns, CapsComeAgainBeforeASmallBoxDropsThem) {
   const NatsClient client(server_.url());
   const auto all = client.Subscribe("r1.>");
   Feeder sink(At(kImuBox + " max-bytes=40000"));
-  for (int i = 0; i < 20; ++i) sink.Push(10'016);  // each a little more than a quarter of the box
+  // each is a little more than a quarter of max-bytes
+  for (int i = 0; i < 20; ++i) sink.Push(10'016);
   sink.End();
   natsConnection_PublishString(client.get(), "r1.end", "");
   EXPECT_GE(CountBefore("r1.end", all.get(), "r1.imu.config." + imu_->id()), 20);
@@ -188,7 +191,7 @@ TEST_F(NatsRuns, TheBoxIsAsThePropertiesSayAlsoWhereItWasMadeBefore) {
     EXPECT_EQ(info->Config->Replicas, 1);
     EXPECT_EQ(info->Config->Storage, js_FileStorage);
   }
-  // A single server cannot store replicas.
+  // Replicas are impossible, because there is only one server.
   Feeder copied(At("subject=r2.imu jetstream=copied replicas=3 drain-timeout=0"));
   copied.Push(32);
   EXPECT_TRUE(Eventually(
@@ -255,7 +258,8 @@ TEST_F(NatsRuns, WhatTheStreamNumbersHasItsNumberAndAGapIsMarked) {
   stranger.Flush();
   const Harness h(gst_harness_new_with_element(source.get(), nullptr, "src"));
   SetPlaying(h.get());
-  // The first message of the stream has the caps, so the sink's first buffer is the second message.
+  // The first message of the stream has the caps, so the source's first buffer is the second
+  // message.
   const struct {
     guint64 offset;
     bool discont;
@@ -264,7 +268,7 @@ TEST_F(NatsRuns, WhatTheStreamNumbersHasItsNumberAndAGapIsMarked) {
     const gst::BufferPtr buffer(gst_harness_pull(h.get()));
     ASSERT_TRUE(buffer);
     EXPECT_EQ(GST_BUFFER_OFFSET(buffer.get()), want.offset);
-    if (want.offset == 2) continue;  // the first of all
+    if (want.offset == 2) continue;  // the first buffer of the run may have the flag
     EXPECT_EQ(GST_BUFFER_FLAG_IS_SET(buffer.get(), GST_BUFFER_FLAG_DISCONT), want.discont)
         << want.offset;
   }
@@ -295,7 +299,7 @@ TEST_F(NatsRuns, DamageIsToldOfAgainAfterAGoodMessageAndAcknowledged) {
     if (js_GetConsumerInfo(&found, client.js(), "box", "slam", nullptr, nullptr) != NATS_OK)
       return false;
     const nats::ConsumerInfoPtr info(found);
-    return info->NumPending == 0 && info->NumAckPending <= 1;  // the last one is downstream
+    return info->NumPending == 0 && info->NumAckPending <= 1;  // the last one is still downstream
   }));
 }
 
@@ -360,7 +364,7 @@ TEST_F(NatsRuns, AServerThatGoesIsToldOfEachTime) {
   }
 }
 
-/// Returns a natssrc's first answer to a history query.
+/// Returns the first answer of a natssrc to a history query.
 gst::HistoryAnswer Past(const std::string& where, const gst::HistoryQuestion& question) {
   NatsPipeline receiver("natssrc name=n" + where + "! fakesink name=see");
   receiver.Play();
@@ -375,7 +379,7 @@ TEST_F(NatsRuns, ThePastCountsWhatIsDamaged) {
   PublishSlices(4, At(box));
   Stranger stranger(server_.url());
   stranger.Publish("r1.front", "no natssink's");
-  Publish(&stranger, "r1.front", "7 0");  // its caps were never published
+  Publish(&stranger, "r1.front", "7 0");  // these caps were never published
   stranger.Flush();
   const gst::HistoryAnswer answer = Past(At("subject=r1.front"), {0, 0, 1'000'000});
   EXPECT_TRUE(answer.ended);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A nats-server of the test itself, on a free port of the loopback interface.
+// A nats-server process that a test starts, on a free port of the loopback interface.
 #pragma once
 #include <gst/gst.h>
 #include <gtest/gtest.h>
@@ -25,7 +25,8 @@ namespace lidar::test {
 
 class NatsServer {
  public:
-  /// Debian installs nats-server in a folder that may be missing in a user's PATH.
+  /// Returns the path of nats-server. Debian installs it in a folder that may be missing in a
+  /// user's PATH.
   static std::string Program() {
     for (const char* path : {"/usr/sbin/nats-server", "/usr/local/bin/nats-server"})
       if (access(path, X_OK) == 0) return path;
@@ -40,20 +41,20 @@ class NatsServer {
   NatsServer(const NatsServer&) = delete;
   NatsServer& operator=(const NatsServer&) = delete;
 
-  /// Starts with JetStream. The port stays the same from the first start on.
+  /// Starts the server with JetStream. Uses the same port at each start.
   void Start(const std::vector<std::string>& options = {}) {
     options_ = options;
     ASSERT_TRUE(Eventually([this] { return TryToStart(); })) << "nats-server does not start";
   }
   void Restart() { Start(options_); }
-  /// Ends the server as a power cut would.
+  /// Kills the process. Like a power cut, this gives it no time to save anything.
   void Kill() {
     if (pid_ <= 0) return;
     kill(pid_, SIGKILL);
     waitpid(pid_, nullptr, 0);
     pid_ = -1;
   }
-  /// Stops the process. Returns once it is stopped.
+  /// Stops the process by SIGSTOP. Returns once the process has stopped.
   void Freeze() {
     kill(pid_, SIGSTOP);
     waitpid(pid_, nullptr, WUNTRACED);
@@ -64,20 +65,21 @@ class NatsServer {
     return scheme + "://" + user + "127.0.0.1:" + port_;
   }
   const std::string& folder() const { return folder_; }
-  /// Returns how often `text` is in the server's log.
+  /// Returns the number of times that `text` occurs in the server's log.
   std::size_t Logged(const std::string& text) const {
     const std::string log = ReadFile(folder_ + "/log");
     std::size_t count = 0;
     for (auto at = log.find(text); at != log.npos; at = log.find(text, at + 1)) ++count;
     return count;
   }
-  /// Makes good.creds and bad.creds in the folder. Returns nothing if a tool for that is missing.
+  /// Makes good.creds and bad.creds in the folder, and returns the options of a server that accepts
+  /// only good.creds. Returns an empty list if a tool for this is missing.
   std::vector<std::string> OptionsForCredentials() const {
     const std::string make = std::string(g_getenv("NATS_MAKE_CREDENTIALS")) + " " + folder_;
     if (std::system(make.c_str()) != 0) return {};
     return {"-c", folder_ + "/operator.conf", "-js=false"};
   }
-  /// Returns the server's number of subscriptions to exactly this subject.
+  /// Returns the number of the server's subscriptions whose subject equals `subject`.
   std::size_t Subscriptions(const std::string& subject) const {
     const std::string sign = "\"subject\": \"" + subject + "\"";
     const std::string text =
@@ -89,7 +91,8 @@ class NatsServer {
   pid_t pid() const { return pid_; }
 
  private:
-  /// Another program may have taken the port meanwhile, so several tries may be needed.
+  /// Starts the process. Returns false if it exits, for example because another program has taken
+  /// the port.
   bool TryToStart() {
     Kill();
     for (const auto& entry : std::filesystem::directory_iterator(folder_))
@@ -143,13 +146,13 @@ class NatsServer {
 
   const TempFolder owner_;
   const std::string& folder_ = owner_.path();
-  std::string port_ = "-1";  // any
-  std::string monitor_;      // port of its monitoring
+  std::string port_ = "-1";  // any free port
+  std::string monitor_;      // port for HTTP requests about the server's state
   std::vector<std::string> options_;
   pid_t pid_ = -1;
 };
 
-/// Tests of streams, which need a server.
+/// The base class of tests that need a server.
 class NatsTest : public ::testing::Test {
  protected:
   void SetUp() override {

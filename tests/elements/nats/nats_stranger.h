@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Messages that other programs publish on the subjects of a stream.
+// Messages that another program publishes on the subjects of a stream.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 
 namespace lidar::test {
 
-/// Another program at the same server.
+/// A program that is neither natssink nor natssrc, and publishes on the same server.
 class Stranger {
  public:
   explicit Stranger(const std::string& url) : client_(url) {}

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Buffers go into natssink and come out of natssrc, while both run.
+// Tests of natssink and natssrc that run at the same time: buffers that enter natssink come out of
+// natssrc.
 #include <atomic>
 #include <thread>
 
@@ -74,7 +75,7 @@ TEST_F(NatsStream, CapsDoNotComeWithEachMessage) {
   EXPECT_LT(caps, 40) << "they come again after a second";
 }
 
-/// The sender answers the third request for caps.
+/// The sender does not answer the first two requests for caps. It answers the third request.
 TEST_F(NatsStream, CapsAreAskedForUntilTheyCome) {
   std::string why;
   const gst::CapsPtr caps(gst_caps_from_string("application/x-imu,sample-size=(int)32"));
@@ -107,7 +108,8 @@ TEST_F(NatsStream, CapsAreAskedForUntilTheyCome) {
   }
 }
 
-/// libnats 3.4 frees a subscription even while its reading thread has a message for it.
+/// libnats 3.4 may free a subscription while its reading thread still handles a message for the
+/// subscription.
 TEST_F(NatsStream, SubscriptionsEndWhileMessagesCome) {
   std::atomic<bool> done{false};
   std::thread flood([&] {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Processor time and memory of other processes.
+// Functions that return the processor time and the memory of other processes.
 #pragma once
 #include <sys/types.h>
 #include <unistd.h>
@@ -9,7 +9,7 @@
 
 namespace lidar::test {
 
-/// Returns the processor time of a process [s]; 0 if it is gone.
+/// Returns the processor time of a process [s], or 0 if the process no longer exists.
 inline double CpuOf(pid_t pid) {
   std::ifstream in("/proc/" + std::to_string(pid) + "/stat");
   std::string word;
@@ -20,7 +20,7 @@ inline double CpuOf(pid_t pid) {
   return (user + system) / static_cast<double>(sysconf(_SC_CLK_TCK));
 }
 
-/// Returns the memory of a process [MB]; 0 if it is gone.
+/// Returns the resident memory of a process [MB], or 0 if the process no longer exists.
 inline double MegabytesOf(pid_t pid) {
   std::ifstream in("/proc/" + std::to_string(pid) + "/statm");
   double pages = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The parts of lidar-worker that need no server.
+// Tests of the parts of lidar-worker that need no server.
 #include <gtest/gtest.h>
 
 #include "src/tools/apps/worker/fleet_watch.h"

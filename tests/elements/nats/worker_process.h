@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A lidar-worker of the test itself, and the poses that it publishes.
+// A lidar-worker process that a test starts, and functions that judge the poses that it publishes.
 #pragma once
 #include <csignal>
 #include <cstdlib>
@@ -11,10 +11,10 @@
 
 namespace lidar::test {
 
-constexpr double kSpeed = 10;  // of all robots [m/s]
+constexpr double kSpeed = 10;  // of every robot [m/s]
 
-/// A robot that drives, with a sensor that costs little processor time. A live source would skip
-/// scans where the machine is busy.
+/// Returns a pipeline of a robot that drives. Its sensor costs little processor time. The source is
+/// not live, because a live source would skip scans on a busy machine.
 inline std::string DrivingRobot(int frames = -1) {
   return "lidartestsrc model=os0-32 mode=512x10 speed=10 num-buffers=" + std::to_string(frames) +
          " ! clocksync ! lidarenc effort=0 key-interval=1000000000" + kSee;
@@ -29,19 +29,20 @@ class WorkerProcess {
         tools::ChildProcess::Config{std::move(command), "", false});
   }
 
-  /// Returns the names "robot.sensor" that the worker follows, by its output so far.
+  /// Returns the names "robot.sensor" that the worker follows, according to its output so far.
   std::set<std::string> Robots() {
     Read();
     return robots_;
   }
-  /// Returns the line that the worker printed when it first took a robot; empty before that.
+  /// Returns the line that the worker printed when it first took `robot`, or an empty string if it
+  /// has not taken it yet.
   std::string Taken(const std::string& robot) {
     Read();
     for (const std::string& line : lines_)
       if (line.rfind(robot + ": taken", 0) == 0) return line;
     return "";
   }
-  /// Returns all lines that the worker printed.
+  /// Returns all lines that the worker has printed so far.
   const std::vector<std::string>& lines() {
     Read();
     return lines_;
@@ -77,15 +78,15 @@ class WorkerProcess {
   std::set<std::string> robots_;
 };
 
-/// Returns the distance from the origin [m].
+/// Returns the distance of a pose from the origin [m].
 inline double DistanceOf(const Kept& pose) {
   double p[3] = {};
   if (pose.bytes.size() >= 64) std::memcpy(p, pose.bytes.data(), sizeof p);
   return std::hypot(p[0], p[1], p[2]);
 }
 
-/// Returns the largest difference between the distance of two poses and the distance that the robot
-/// drove between them [m].
+/// Compares each pose with the next one: the difference of their distances from the origin, and the
+/// distance that the robot drove between them. Returns the largest deviation [m].
 inline double LargestJump(std::vector<Kept> poses) {
   std::stable_sort(poses.begin(), poses.end(),
                    [](const Kept& a, const Kept& b) { return a.capture_time < b.capture_time; });
@@ -98,7 +99,8 @@ inline double LargestJump(std::vector<Kept> poses) {
   return largest;
 }
 
-/// Returns the distance by which the last pose is behind the robot, which drove straight on [m].
+/// Returns the distance by which the last pose is behind the true position of the robot, which
+/// drives straight ahead from its first pose on [m].
 inline double BehindBy(const std::vector<Kept>& poses) {
   const auto earlier = [](const Kept& a, const Kept& b) { return a.capture_time < b.capture_time; };
   const auto [first, last] = std::minmax_element(poses.begin(), poses.end(), earlier);
@@ -107,14 +109,16 @@ inline double BehindBy(const std::vector<Kept>& poses) {
   return kSpeed * time - (DistanceOf(*last) - DistanceOf(*first));
 }
 
-/// Returns the poses that one odometry makes of a robot's whole stream in JetStream.
+/// Returns the poses that a single lidarodometry makes from the whole stream of `robot` in
+/// JetStream.
 inline std::vector<Kept> PosesInOneGo(const std::string& robot, const std::string& url) {
   NatsPipeline player("natssrc name=n eos-at-end=true start-time=0 jetstream=fleet subject=fleet." +
                       robot + ".lidar.front url=" + url +
                       " ! lidardec ! lidarodometry name=o ! fakesink sync=false async=false "
                       "o.odometry ! fakesink name=see sync=false async=false");
   player.Play();
-  // A drive of ten minutes may outlast the patience of WaitForEnd().
+  // Waits as long as poses arrive: a replay of ten minutes may take longer than one call of
+  // WaitForEnd() waits.
   std::string end;
   std::size_t before = 0;
   do {

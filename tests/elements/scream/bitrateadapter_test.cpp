@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// bitrateadapter after real encoders, and after stand-ins for encoders that need hardware.
+// Tests of bitrateadapter after real encoders, and after stand-ins for encoders that need hardware.
 #include <gst/base/gstbasetransform.h>
 #include <gtest/gtest.h>
 
@@ -17,7 +17,8 @@ using lidar::gst::EventPtr;
 using lidar::gst::PadPtr;
 using lidar::gst::StructurePtr;
 
-// A stand-in: passes all buffers, and has the bitrate properties of all encoders at once.
+// A stand-in for an encoder. It passes all buffers unchanged, and has the bitrate properties of all
+// known encoders.
 struct StandIn {
   GstBaseTransform parent;
   guint bitrate;
@@ -81,7 +82,8 @@ void stand_in_class_init(StandInClass* klass) {
                                         "The gst-lidar developers");
 }
 
-/// Registers `factory` with a type of its own, by which GStreamer finds the factory of an element.
+/// Registers the stand-in as `factory`. Each factory gets its own type, because GStreamer finds the
+/// factory of an element by the element's type.
 void RegisterStandIn(const std::string& factory) {
   if (GstElementFactory* known = gst_element_factory_find(factory.c_str()); known != nullptr) {
     gst_object_unref(known);
@@ -95,8 +97,8 @@ void RegisterStandIn(const std::string& factory) {
   gst_element_register(nullptr, factory.c_str(), GST_RANK_NONE, type);
 }
 
-/// A chain that ends in the bitrateadapter `a`. Only `a` runs: encoders take a bitrate without the
-/// hardware that they need to run.
+/// A chain of elements that ends in the bitrateadapter `a`. Only `a` is started: the bitrate of an
+/// encoder can be set without the hardware that the encoder needs to run.
 class Chain {
  public:
   explicit Chain(const std::string& description)
@@ -108,7 +110,7 @@ class Chain {
   }
   ~Chain() { gst_element_set_state(bin_.get(), GST_STATE_NULL); }
 
-  /// Sends a target from downstream.
+  /// Sends a target bitrate upstream, from the end of the chain.
   bool Send(guint bps) {
     const GstLidarTargetBitrate target{bps, 1, 0, 0, 0, 0, "update"};
     const ElementPtr end(Find("end"));
@@ -141,7 +143,7 @@ class KnownEncoders : public ::testing::TestWithParam<Known> {};
 TEST_P(KnownEncoders, GetTheTargetInTheirOwnUnit) {
   const Known known = GetParam();
   RegisterStandIn(known.factory);
-  // The unit of a known property is the same if the user names the property.
+  // A known property keeps its unit if the user names the property.
   for (const std::string& said : {std::string(), std::string(" property=") + known.property}) {
     Chain chain(std::string(known.factory) + " name=e ! identity ! bitrateadapter name=a" + said);
     EXPECT_TRUE(chain.Send(2'000'000));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// screamsink and screamsrc agree on a key by DTLS, over two links and over one.
+// Tests in which screamsink and screamsrc agree on a key by DTLS, over two links or one.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -20,11 +20,12 @@ const TestCertificates& Papers() {
 std::string OfEdge() { return Papers().Trusting("edge", "robot"); }
 std::string OfRobot() { return Papers().Trusting("robot", "edge"); }
 
-/// A link that dies after `left` datagrams: before the hello, within the hello, within the
-/// handshake, after the handshake, or after some packets.
+/// A case of the test below: one of the two links dies after it has carried `left` datagrams. The
+/// values are such that it dies before the hello, within the hello, within the handshake, after the
+/// handshake, and after some packets.
 struct Death {
   int left;
-  bool of_first = false;  // the first link dies instead of the second one
+  bool of_first = false;  // false: the second link dies
 };
 class BondedDtls : public ::testing::TestWithParam<Death> {};
 
@@ -37,7 +38,8 @@ TEST_P(BondedDtls, GoesOnOverOneLinkWhereTheOtherDies) {
   const std::string swapped = links.substr(comma + 1) + "," + links.substr(0, comma);
   Pipeline sender(Bonded(GetParam().of_first ? swapped : links, OfRobot()));
   const ElementPtr out = sender.Get("out"), in = receiver.pipeline.Get("in");
-  // Packets that went to the dying link have time to be sent again over the other one.
+  // While this many packets arrive after the death, packets of the dead link can be sent again over
+  // the other link.
   constexpr guint kAfterDeath = 100;
   std::optional<guint> at_death;
   Stream(sender, receiver, [&] {
@@ -45,7 +47,8 @@ TEST_P(BondedDtls, GoesOnOverOneLinkWhereTheOtherDies) {
     return at_death && receiver.passed >= *at_death + kAfterDeath &&
            OfAllLinks(out.get(), "feedback-accepted") > 10;
   });
-  // On a busy machine packets of the dying link may be too old to be sent over the other one.
+  // On a busy machine some packets of the dead link may be too old to be sent again over the other
+  // link.
   EXPECT_LT(PacketsOf(out.get()) - receiver.passed, kAfterDeath / 2);
   EXPECT_EQ(Stats(out.get())["dtls-handshakes"], 1U);
   EXPECT_EQ(Stats(in.get())["dtls-handshakes"], 1U);
@@ -182,7 +185,7 @@ TEST(Dtls, WhatIsNotLiveWaitsForTheKeyAndLosesNothing) {
   EXPECT_EQ(receiver.passed, 20U);
 }
 
-/// A pad that pushes packets as a source that is not live does.
+/// A pad that pushes packets into a screamsink, and answers that its stream is not live.
 class WaitingSource {
  public:
   explicit WaitingSource(GstElement* sink) : sink_(sink) {
@@ -201,7 +204,7 @@ class WaitingSource {
     gst_pad_push_event(src_.get(), gst_event_new_caps(caps.get()));
     gst_pad_push_event(src_.get(), NewSegment());
   }
-  /// Pushes a packet and calls `wake` while the push waits. Returns the result of the push.
+  /// Pushes a packet, and calls `wake` while the push is blocked. Returns the result of the push.
   GstFlowReturn PushUntil(const std::function<void()>& wake) {
     std::atomic<bool> is_done{false};
     GstFlowReturn flow = GST_FLOW_OK;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A sender of audio over several links, and its receiver.
+// A sender that sends audio over several links, and the receiver of the audio.
 #pragma once
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ inline const std::string kBondedAudio =
     "audiotestsrc name=src num-buffers=150 samplesperbuffer=441 is-live=true ! "
     "audio/x-raw,rate=44100,channels=1,format=S16BE ! rtpL16pay ! ";
 
-/// Returns the port of the screamsrc `in`.
+/// Returns the port to which the screamsrc `in` is bound.
 inline std::string BoundPort(Pipeline& pipeline) {
   GSocket* socket = nullptr;
   g_object_get(pipeline.Get("in").get(), "used-socket", &socket, nullptr);
@@ -36,7 +36,8 @@ inline std::string BoundPort(Pipeline& pipeline) {
   return std::to_string(port);
 }
 
-/// A screamsrc of raw audio on a free port, and the number of buffers that have come.
+/// A screamsrc that receives raw audio on a free port, and the number of buffers that it has
+/// output.
 struct BondReceiver {
   explicit BondReceiver(const std::string& options = "")
       : pipeline("screamsrc name=in port=0 " + options +
@@ -60,7 +61,7 @@ inline std::string Bonded(const std::string& addresses, const std::string& more 
   return kBondedAudio + "screamsink name=out bonding-addresses=\"" + addresses + "\" " + more;
 }
 
-/// Returns a field of each element of the array `links` in `stats`.
+/// Returns the values of `field` in all elements of the array `links`, which is in `stats`.
 inline std::vector<guint64> OfLinks(GstElement* element, const char* field) {
   const gst::StructurePtr stats = StatsOf(element);
   std::vector<guint64> values;
@@ -74,21 +75,21 @@ inline std::vector<guint64> OfLinks(GstElement* element, const char* field) {
   return values;
 }
 
-/// Returns the sum of a field of all links.
+/// Returns the sum of the values of `field` over all links.
 inline guint64 OfAllLinks(GstElement* element, const char* field) {
   const auto values = OfLinks(element, field);
   return std::accumulate(values.begin(), values.end(), guint64{0});
 }
-/// Returns the number of packets that came into the bonded `sink`.
+/// Returns the number of packets that were pushed into the bonded `sink`.
 inline guint64 PacketsOf(GstElement* sink) { return OfAllLinks(sink, "packets-first"); }
 
-/// Returns true if both links have had more than ten reports.
+/// Returns true if both links have received more than ten reports.
 inline bool BothHear(GstElement* sink) {
   const auto accepted = OfLinks(sink, "feedback-accepted");
   return accepted.size() == 2 && accepted[0] > 10 && accepted[1] > 10;
 }
 
-/// Plays until `enough` returns true, then ends both pipelines.
+/// Plays the sender until `enough` returns true, then ends both pipelines.
 inline void Stream(Pipeline& sender, BondReceiver& receiver, const std::function<bool()>& enough) {
   g_object_set(sender.Get("src").get(), "num-buffers", -1, nullptr);
   sender.Play();
@@ -98,11 +99,12 @@ inline void Stream(Pipeline& sender, BondReceiver& receiver, const std::function
   EXPECT_TRUE(receiver.pipeline.Ends());
 }
 
-/// Returns the number of packets that links dropped as too old, as on a busy machine.
+/// Returns the number of packets that links dropped because they were too old. This happens on a
+/// busy machine.
 inline guint64 TooOld(GstElement* sink) {
   return OfAllLinks(sink, "packets-dropped") - OfAllLinks(sink, "copies-cancelled");
 }
-/// Expects that all of `count` packets have come, except a few that were too old.
+/// Expects that all of the `count` packets have arrived, except a few that were too old.
 inline void ExpectAllPassed(const BondReceiver& receiver, Pipeline& sender, guint64 count) {
   const guint64 too_old = TooOld(sender.Get("out").get());
   EXPECT_LE(too_old, count / 10);
@@ -110,8 +112,9 @@ inline void ExpectAllPassed(const BondReceiver& receiver, Pipeline& sender, guin
   EXPECT_GE(receiver.passed + too_old, count);
 }
 
-/// A router between the links of a sender and one receiver. The sender reaches each link at its own
-/// port of the router, and the receiver gets each link's packets from another address.
+/// A router between the two links of a sender and one receiver. The router has a port for each
+/// link, to which the sender sends. It forwards the packets of each link from a different address,
+/// so that the receiver can distinguish the links.
 class Router {
  public:
   static constexpr int kLinks = 2;
@@ -133,23 +136,24 @@ class Router {
   Router(const Router&) = delete;
   Router& operator=(const Router&) = delete;
 
-  /// Returns the links as the property bonding-addresses needs them.
+  /// Returns both links in the format of the property bonding-addresses.
   std::string Addresses() const {
     return "127.0.0.1:" + PortOf(doors_[0]) + "@127.0.0.1,127.0.0.1:" + PortOf(doors_[1]) +
            "@127.0.0.2";
   }
 
-  /// Link 1 dies after this number of datagrams, counted over both directions.
+  /// The number of datagrams after which link 1 dies. Datagrams of both directions count.
   std::atomic<int> left{1 << 30};
-  /// No link carries any datagram.
+  /// If true, neither link carries any datagrams.
   std::atomic<bool> dark{false};
-  /// Feedback of each link goes to the other one.
+  /// If true, the feedback of each link is sent to the other link.
   std::atomic<bool> swaps{false};
-  /// Link 1 loses the sender's datagrams.
+  /// If true, link 1 loses all datagrams of the sender.
   std::atomic<bool> loses{false};
-  /// Link 1 loses the receiver's datagrams.
+  /// If true, link 1 loses all datagrams of the receiver.
   std::atomic<bool> mutes{false};
-  /// The receiver sees a new address of link 1 each time this has passed [ms]; 0: never.
+  /// The time after which the receiver sees a new address of link 1, again and again [ms]; 0:
+  /// never.
   std::atomic<int> moves_each_ms{0};
   std::atomic<int> moves{0};
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Scans over several links: the coder makes no difference.
+// Tests that send coded scans over several links, with each coder.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,14 +23,15 @@ struct Coding {
 
 std::string NameOf(const ::testing::TestParamInfo<Coding>& info) { return info.param.name; }
 
-/// Records the coded slices that pass an identity: scan, index, count and bytes.
+/// Records the coded slices that pass an identity element: the scan, index, count and bytes of each
+/// slice.
 class PassingSlices {
  public:
   explicit PassingSlices(const ElementPtr& identity) {
     g_object_set(identity.get(), "signal-handoffs", TRUE, nullptr);
     g_signal_connect(identity.get(), "handoff", G_CALLBACK(OnSlice), this);
   }
-  /// Returns the slices sorted, because the links may change their order.
+  /// Returns the slices in sorted order, because the links may change the order.
   std::vector<std::string> sorted() const {
     const std::lock_guard lock(mutex_);
     std::vector<std::string> slices = slices_;
@@ -77,7 +78,8 @@ TEST_P(BondedScans, ComeOnceAndWholeOverTwoLinks) {
   sender.Play();
   EXPECT_TRUE(sender.Ends());
   EXPECT_TRUE(receiver.Ends());
-  // Compares with the slices that were sent: a live encoder that is late leaves slices out.
+  // Compares with the slices that were sent, not with all slices of the scans, because a live
+  // encoder that is late omits slices.
   const std::vector<std::string> slices = sent.sorted();
   EXPECT_FALSE(slices.empty());
   const std::vector<std::string> came = got.sorted();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// screamsink over two links whose feedback and time the test makes.
+// Tests of screamsink over two links. The test makes their feedback and sets the time.
 #include <gst/video/video.h>
 #include <gtest/gtest.h>
 
@@ -29,7 +29,7 @@ class BondedSink : public ::testing::Test {
  protected:
   BondedSink() {
     g_object_set(sink_, "bonding-addresses", "127.0.0.1:5004@127.0.0.1,127.0.0.1:5006@127.0.0.2",
-                 "bonding-method", 2, nullptr);  // backup: few copies
+                 "bonding-method", 2, nullptr);  // method "backup", which makes few copies
   }
   ~BondedSink() override {
     h_.reset();
@@ -42,7 +42,7 @@ class BondedSink : public ::testing::Test {
     Open();
     Watch();
   }
-  /// Stops and plays again.
+  /// Stops the element and plays it again.
   void Restart() {
     gst_element_set_state(sink_, GST_STATE_READY);
     gst_pad_set_active(h_->srcpad, FALSE);
@@ -65,7 +65,7 @@ class BondedSink : public ::testing::Test {
   }
   void Advance(GstClockTime by) { gst_test_clock_set_time(time_.clock(), time_.now() + by); }
 
-  /// Wakes the links that wait for a time that has passed: a new packet does not wake them.
+  /// Wakes the links that wait for a time that has passed. Pushing a new packet does not wake them.
   void WakeLinks() {
     for (GstClockID next = nullptr; gst_test_clock_peek_next_pending_id(time_.clock(), &next);) {
       const GstClockTime due = gst_clock_id_get_time(next);
@@ -76,7 +76,7 @@ class BondedSink : public ::testing::Test {
     }
   }
 
-  /// Returns a datagram as the socket of a link receives it.
+  /// Returns a datagram with its source address, as the socket of a link outputs it.
   static BufferPtr From(const std::vector<std::uint8_t>& bytes, const char* host, guint port) {
     BufferPtr buffer(FromBytes(bytes));
     SetSource(buffer.get(), host, port);
@@ -85,7 +85,7 @@ class BondedSink : public ::testing::Test {
   void Bring(std::size_t link, BufferPtr buffer) {
     gst_pad_push(PadOf(NameOf("ecnudpsrc", link), "src").get(), buffer.release());
   }
-  /// Reports over `link` that the packet arrived.
+  /// Pushes a report to `link` that says that packet `seq` has arrived.
   void Report(std::size_t link, guint16 seq) {
     rtcp::CongestionFeedback report;
     report.sender_ssrc = 9;
@@ -94,7 +94,7 @@ class BondedSink : public ::testing::Test {
     report.blocks.push_back({0x1234, seq, {{true, Ecn::kEct1, Duration{0}}}});
     Bring(link, From(rtcp::BuildCcfb(report), "127.0.0.1", kPorts[link]));
   }
-  /// Sends a slice of one packet, and returns the links by which it left.
+  /// Pushes a slice of one packet. Returns the links to which the bond gave the packet.
   std::set<std::size_t> Send(guint16 seq, std::optional<guint> scan = std::nullopt) {
     const std::array<int, 2> before{packets_[0], packets_[1]};
     Rtp packet;
@@ -111,22 +111,24 @@ class BondedSink : public ::testing::Test {
       if (packets_[i] > before[i]) links.insert(i);
     return links;
   }
-  /// Advances time. Returns true once all packets given to the link have been sent or dropped.
+  /// Advances the time. Returns true once the link has sent or dropped all packets that the bond
+  /// gave it.
   bool HasLeft(std::size_t link) {
-    // Advances slowly: while the sending thread waits for a processor, its packet may get too old.
+    // Advances the time in small steps, because the sending thread may have to wait for a
+    // processor. In large steps its packet could become too old.
     constexpr int kPacing = 20, kSeldom = 100;
     int looks = 0;
     return Eventually([&] {
       const bool is_seldom = ++looks % kSeldom == 0;
       if (looks <= kPacing || is_seldom) Advance(GST_MSECOND);
       if (is_seldom) WakeLinks();
-      // Cancelled copies are among the dropped packets.
+      // The number of dropped packets includes cancelled copies.
       const guint64 settled = OfLink("packets-sent", link) + OfLink("packets-dropped", link);
       return settled == static_cast<guint64>(packets_[link].load());
     });
   }
   guint64 OfLink(const char* field, std::size_t link) { return OfLinks(sink_, field)[link]; }
-  /// Pushes a list of datagrams of these sizes to the socket of a link.
+  /// Pushes a list of datagrams with these sizes to the socket element of a link.
   void SendDatagrams(std::size_t link, std::initializer_list<std::size_t> sizes) {
     GstBufferList* list = gst_buffer_list_new();
     for (const std::size_t size : sizes)
@@ -134,7 +136,7 @@ class BondedSink : public ::testing::Test {
     EXPECT_EQ(gst_pad_chain_list(PadOf(NameOf("ecnudpsink", link), "sink").get(), list),
               GST_FLOW_OK);
   }
-  /// Returns the next message scream-link-changed as text; empty if there is none.
+  /// Returns the next scream-link-changed message as text, or an empty string if there is none.
   std::string ChangedLink() {
     while (const MessagePtr message = bus_->Pop(GST_MESSAGE_ELEMENT)) {
       if (!gst_message_has_name(message.get(), "scream-link-changed")) continue;
@@ -156,11 +158,12 @@ class BondedSink : public ::testing::Test {
       GST_ELEMENT(gst_object_ref_sink(gst_element_factory_make("screamsink", nullptr)));
   std::optional<ElementBus> bus_{sink_};
   Harness h_;
-  std::array<std::atomic<int>, 2> packets_{};  // numbers that the bond gave each link
-  std::atomic<GstClockTime> ended_at_{0};      // when the bond passed EOS on
+  std::array<std::atomic<int>, 2> packets_{};  // number of packets that the bond gave to each link
+  std::atomic<GstClockTime> ended_at_{0};      // when the bond passed EOS downstream
 
  private:
-  /// Begins the streams of feedback, because the links' own sources wait for their sockets.
+  /// Pushes the first events of the feedback streams. The links' own sources push nothing, because
+  /// they wait for datagrams.
   void Open() {
     for (std::size_t i = 0; i < 2; ++i) {
       const PadPtr pad = PadOf(NameOf("ecnudpsrc", i), "src");
@@ -192,7 +195,8 @@ class BondedSink : public ::testing::Test {
   }
 };
 
-/// The receiver asks for a key unit on each link, and each screamtx passes the request on.
+/// The receiver may ask for a key unit on each link, and each screamtx passes its request to the
+/// bond. Only one of the requests may reach the encoder.
 TEST_F(BondedSink, AsksForAKeyUnitOnceWhicheverLinksBringTheWish) {
   Start();
   const auto ask = [this](std::size_t link, GstEvent* event) {
@@ -243,7 +247,7 @@ TEST_F(BondedSink, CountsWhatStrangersSendToAnyLink) {
     EXPECT_EQ(Stats(sink_)["feedback-foreign-address"], foreign) << link;
     Bring(link, From(no_report, "127.0.0.1", other));
     Bring(link, From(no_report, "127.0.0.3", own));
-    Bring(link, BufferPtr(FromBytes(no_report)));  // without an address
+    Bring(link, BufferPtr(FromBytes(no_report)));  // has no address
     GstBufferList* list = gst_buffer_list_new();
     for (const guint port : {own, other, own, other})
       gst_buffer_list_add(list, From(no_report, "127.0.0.1", port).release());
@@ -254,7 +258,7 @@ TEST_F(BondedSink, CountsWhatStrangersSendToAnyLink) {
   Restart();
 }
 
-/// Returns the writable properties of the element as text, without those that differ between links.
+/// Returns the writable properties of the element as text, except those that differ between links.
 std::string SettingsOf(GstElement* element) {
   const std::set<std::string> of_link = {"name",   "parent",      "host",         "port",
                                          "socket", "used-socket", "peer-address", "stats"};
@@ -295,7 +299,8 @@ TEST_F(BondedSink, GivesEachLinkTheSettingsOfTheSink) {
   EXPECT_NE(SettingsOf(Child("screamtx1").get()).find("max-bitrate=555555\n"), std::string::npos);
 }
 
-/// Copies of packets from before the flush would come before that of the packet after the flush.
+/// After a flush the bond must not copy packets from before the flush. Their copies would be sent
+/// before the copy of the packet after the flush.
 TEST_F(BondedSink, CopiesNothingOfBeforeAFlush) {
   Start();
   guint16 seq = 0;
@@ -320,7 +325,8 @@ TEST_F(BondedSink, CopiesNothingOfBeforeAFlush) {
   EXPECT_EQ(OfAllLinks(sink_, "packets-copies"), copies + 1);
 }
 
-/// The second link is blocked until the first one has delivered a slice of the scan.
+/// The second link is blocked until a report says that the first link has delivered a slice of the
+/// scan.
 TEST_F(BondedSink, SendsTheRestOfAScanOfWhichAnotherLinkDeliveredASlice) {
   g_object_set(sink_, "bonding-method", 1, "max-queue-delay", guint64{5 * GST_SECOND}, nullptr);
   Start();
@@ -337,7 +343,7 @@ TEST_F(BondedSink, SendsTheRestOfAScanOfWhichAnotherLinkDeliveredASlice) {
       &blocked, nullptr);
   EXPECT_EQ(Send(1), (std::set<std::size_t>{0, 1}));
   ASSERT_TRUE(Eventually([&] { return blocked.load(); }));
-  constexpr guint16 kLast = 16;  // more than leave at once
+  constexpr guint16 kLast = 16;  // more packets than a link sends at once
   for (guint16 seq = 2; seq <= kLast; ++seq) Send(seq, 7);
   ASSERT_TRUE(HasLeft(0));
   Report(0, 2);
@@ -405,7 +411,7 @@ TEST_F(BondedSink, TellsTheEncoderWhatTheLinkShowsThatHasTheTarget) {
   EXPECT_GT(target.max_bitrate, 800'000U);
 }
 
-/// A message scream-link-changed says more.
+/// A link that fails is reported by the message scream-link-changed, so it needs no warning.
 TEST_F(BondedSink, WarnsOfNoErrorOfALink) {
   Start();
   for (const std::size_t link : {0U, 1U}) {
@@ -465,7 +471,7 @@ TEST_F(BondedSink, KeepsALinkThatSendsSomePacketsAndGivesUpOneThatSendsNone) {
   std::string changed;
   EXPECT_TRUE(Eventually([&] {
     SendDatagrams(1, {kTooLong});
-    Advance(100 * GST_MSECOND);  // the bond checks all links
+    Advance(100 * GST_MSECOND);  // the bond checks all links at this time
     changed = ChangedLink();
     return !changed.empty();
   }));
@@ -564,7 +570,7 @@ TEST_F(BondedSink, WaitsAtTheEndForWhatMayStillArrive) {
   Send(1);
   const GstClockTime made = time_.now();
   std::thread end([this] { gst_harness_push_event(h_.get(), gst_event_new_eos()); });
-  g_usleep(50'000);  // an EOS that does not wait has passed by now
+  g_usleep(50'000);  // by now an EOS that does not wait would have passed
   Advance(150 * GST_MSECOND);
   g_usleep(50'000);
   Advance(51 * GST_MSECOND);
@@ -583,7 +589,7 @@ TEST_F(BondedSink, EndsAtOnceWhereAllHasArrived) {
       for (const std::size_t link : links) Report(link, 1);
     }
     ended_at_ = 0;
-    gst_harness_push_event(h_.get(), gst_event_new_eos());  // the clock stands still
+    gst_harness_push_event(h_.get(), gst_event_new_eos());  // the clock does not advance during EOS
     EXPECT_EQ(ended_at_, time_.now()) << with_packets;
   }
 }
@@ -622,7 +628,7 @@ TEST_F(BondedSink, TellsOnceOfSwappedFeedbackAndInTheNextRunAgain) {
   for (int run = 0; run < 2; ++run) {
     EXPECT_EQ(OfAllLinks(sink_, "feedback-ignored"), 0U) << run;
     for (const std::size_t link : Send(seq++)) ASSERT_TRUE(HasLeft(link));
-    Advance(2 * GST_SECOND);  // the copies that prove a link have ended
+    Advance(2 * GST_SECOND);  // by then a link sends no more copies to prove that it works
     for (int swapped = 0; swapped < 4; ++seq) {
       const auto links = Send(seq);
       if (links.size() != 1) continue;
@@ -633,7 +639,7 @@ TEST_F(BondedSink, TellsOnceOfSwappedFeedbackAndInTheNextRunAgain) {
       Advance(20 * GST_MSECOND);
       Report(other, seq);
       if (OfLink("feedback-ignored", other) == ignored)
-        continue;  // the other link has a copy by now
+        continue;  // the other link has sent a copy, so the report is about its own packet
       ++swapped;
       EXPECT_EQ(OfLink("feedback-ignored", other), ignored + 1);
       ASSERT_TRUE(Eventually([&] { return OfLink("feedback-accepted", own) == accepted + 1; }))

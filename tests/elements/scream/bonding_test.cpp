@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// screamsink over several links to one screamsrc, over loopback sockets.
+// Tests of screamsink that sends over several links to one screamsrc, with sockets of the loopback
+// interface.
 #include <dlfcn.h>
 #include <gtest/gtest.h>
 #include <ifaddrs.h>
@@ -17,7 +18,8 @@
 static std::atomic<bool> loopback_has_carrier{true}, loopback_has_ipv4{true},
     loopback_has_ipv6{true};
 
-/// Replaces libc's function in this program and in its plugins.
+/// Replaces libc's function in this program and in the plugins that it loads. Changes the state of
+/// the loopback interface.
 extern "C" int getifaddrs(ifaddrs** first) noexcept {
   using Get = int (*)(ifaddrs**);
   static const auto next = reinterpret_cast<Get>(dlsym(RTLD_NEXT, "getifaddrs"));
@@ -150,7 +152,7 @@ TEST(Bonding, GoesOnWhereTheFeedbackOfTwoLinksIsSwapped) {
   const ElementPtr out = sender.Get("out");
   Stream(sender, receiver, [&] {
     router.swaps = receiver.passed >= 50;
-    // Feedback of packets that a link never sent is ignored.
+    // A link ignores feedback about packets that it never sent.
     return receiver.passed >= 150 && OfAllLinks(out.get(), "feedback-ignored") > 0;
   });
   ExpectAllPassed(receiver, sender, PacketsOf(out.get()));
@@ -169,7 +171,8 @@ TEST(Bonding, GoesOnWhereFeedbackOfALinkNeverComes) {
   const auto accepted = OfLinks(out.get(), "feedback-accepted");
   EXPECT_GT(accepted[0], 10U);
   EXPECT_EQ(accepted[1], 0U);
-  // The first report of the other link may be overdue on a busy machine.
+  // On a busy machine the first report of link 0 may be late. Until then some packets are sent over
+  // link 1.
   EXPECT_LT(OfLinks(out.get(), "packets-first")[1], 15U) << "it has proved nothing";
 }
 
@@ -180,7 +183,8 @@ TEST(Bonding, GoesOnWhereTheAddressOfALinkChangesEachSecond) {
   Pipeline sender(Bonded(router.Addresses()));
   const ElementPtr out = sender.Get("out"), in = receiver.pipeline.Get("in");
   Stream(sender, receiver, [&] { return router.moves >= 4 && receiver.passed >= 450; });
-  // A move of the router loses the datagrams that wait in its old socket.
+  // Each time the router changes the address of link 1, it loses the datagrams that wait in the old
+  // socket.
   EXPECT_GE(receiver.passed, PacketsOf(out.get()) * 9 / 10);
   EXPECT_EQ(OfLinks(out.get(), "packets-sent").size(), 2U);
   EXPECT_LE(OfLinks(in.get(), "packets-received").size(), 4U);
@@ -195,7 +199,7 @@ TEST(Bonding, ShowsEachLinksFigures) {
   const ElementPtr out = sender.Get("out");
   sender.Play();
   ASSERT_TRUE(Eventually([&] { return receiver.passed >= 40; }));
-  router.loses = true;  // link 1, until the end
+  router.loses = true;  // link 1 loses all media until the end
   EXPECT_TRUE(sender.Ends());
   EXPECT_TRUE(receiver.pipeline.Ends());
   ExpectAllPassed(receiver, sender, 150);
@@ -232,7 +236,7 @@ TEST(Bonding, WhatOneLinkDeliveredLeavesTheQueueOfTheOtherAndWhatNoneDidStays) {
   };
   sender.Play();
   ASSERT_TRUE(Eventually([&] { return receiver.passed >= 40; }));
-  router.loses = true;  // link 1: its window fills, and its copies wait
+  router.loses = true;  // the window of link 1 fills, and its copies wait
   EXPECT_TRUE(sender.Ends());
   EXPECT_TRUE(receiver.pipeline.Ends());
   ExpectAllPassed(receiver, sender, 150);
@@ -255,7 +259,7 @@ TEST(Bonding, WhatIsLateOnAllLinksLeavesTheirQueuesAndNewerPacketsGoOn) {
   };
   sender.Play();
   ASSERT_TRUE(Eventually([&] { return receiver.passed >= 40; }));
-  router.dark = true;  // the windows fill, and packets wait on both links
+  router.dark = true;  // both windows fill, and packets wait on both links
   EXPECT_TRUE(Eventually([&] { return std::min(late(0), late(1)) >= 20; }));
   router.dark = false;
   const guint before = receiver.passed;
@@ -323,7 +327,7 @@ TEST(Bonding, FailsWhereNoLinkCanBeUsed) {
 }
 
 TEST(Bonding, SaysWhyTheSocketOfALinkDoesNotOpen) {
-  Pipeline sender(Bonded("127.0.0.1:5004@203.0.113.9"));  // no machine has that address
+  Pipeline sender(Bonded("127.0.0.1:5004@203.0.113.9"));  // no machine has this address
   sender.Play();
   EXPECT_TRUE(Warns(sender, "The link 127.0.0.1:5004@203.0.113.9 cannot be used: Error binding"));
   EXPECT_TRUE(Warns(sender, "No link can be used: Error binding"));
@@ -356,7 +360,8 @@ INSTANTIATE_TEST_SUITE_P(Ciphers, BondedSrtp,
                                            "srtp-cipher=aes-128-gcm srtp-key=555555555555555555555"
                                            "55555555555555555555555555555555555"));
 
-/// The receiver gets the new key first, and uses it for feedback once the media use it.
+/// The receiver gets the new key first. It uses the key for feedback only after it has received
+/// media with the new key.
 TEST(Bonding, TakesANewKeyWithoutAGap) {
   const std::string old_key = std::string(60, '5'), new_key = std::string(60, '6');
   BondReceiver receiver("srtp-key=" + old_key);
@@ -398,7 +403,7 @@ TEST(Bonding, StartsAgainAndWithOneLink) {
   EXPECT_EQ(receiver.passed, 5U);
 }
 
-/// Returns the RTP datagrams that a sender of fixed audio puts on the wire.
+/// Returns the RTP datagrams that screamsink sends for a fixed piece of audio.
 std::vector<std::string> Datagrams(const std::string& sink_options, const std::string& to_suffix) {
   GSocket* socket =
       g_socket_new(G_SOCKET_FAMILY_IPV4, G_SOCKET_TYPE_DATAGRAM, G_SOCKET_PROTOCOL_UDP, nullptr);
@@ -422,7 +427,7 @@ std::vector<std::string> Datagrams(const std::string& sink_options, const std::s
     char bytes[2'000];
     const gssize n = g_socket_receive(socket, bytes, sizeof bytes, nullptr, nullptr);
     const auto type = static_cast<guint8>(bytes[1]);
-    if (n < 2 || (type >= 192 && type < 224)) break;  // its goodbye
+    if (n < 2 || (type >= 192 && type < 224)) break;  // stops at the sender's goodbye
     datagrams.emplace_back(bytes, static_cast<std::size_t>(n));
   }
   g_object_unref(socket);
@@ -477,7 +482,8 @@ TEST(BondAddresses, MayHaveBlanksAroundEach) {
   EXPECT_EQ(links->front().text, "edge:1@lo") << "as it is shown";
 }
 
-// Addresses of interfaces have this form, and are compared with the links' addresses.
+// A local address is converted to the form in which the system returns the addresses of interfaces,
+// because the two are compared.
 TEST(BondAddresses, AreKeptInOneForm) {
   for (const char* local : {"fd00::2", "FD00::2", "fd00:0:0::2", "[fd00::2]"}) {
     std::string error;

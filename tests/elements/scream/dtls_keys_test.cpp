@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// DTLS handshakes of two ends whose datagrams the test carries.
+// Tests of DTLS handshakes between two ends. The test carries their datagrams.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,16 +23,18 @@ using test::frozen_at;
 using test::ToBytes;
 using Bytes = std::vector<std::uint8_t>;
 
-constexpr std::size_t kLengthOfRecord = 11;          // two bytes
-constexpr std::size_t kRandomOfHello = 13 + 12 + 2;  // behind the headers and the version
+// Position of the record's length, which has two bytes.
+constexpr std::size_t kLengthOfRecord = 11;
+constexpr std::size_t kRandomOfHello = 13 + 12 + 2;  // position after the headers and the version
 
-/// A datagram, and the client's port from which the server gets it or to which the server sends it.
+/// A datagram between a client and the server. `port` is the client's port: the server receives the
+/// datagram from this port, or sends it to this port.
 struct Carried {
   guint16 port;
   Bytes bytes;
 };
 
-/// Datagrams that wait for the test to carry them.
+/// A queue of datagrams that the test has not carried yet.
 class Wire {
  public:
   void Put(Carried datagram) {
@@ -96,7 +98,7 @@ class DtlsEnds : public ::testing::Test {
     end.Take(buffer.get());
   }
   static bool IsOfHello(const Bytes& datagram) { return datagram[0] == 22 && datagram[13] == 1; }
-  /// Returns the client's first hello, which may take several datagrams.
+  /// Returns the datagrams of a client's first hello.
   std::vector<Bytes> HelloOfClient() {
     std::vector<Bytes> hello;
     StartClient();
@@ -107,7 +109,8 @@ class DtlsEnds : public ::testing::Test {
     client_.reset();
     return hello;
   }
-  /// Returns the ports that get answers: waits for `expected` ports, and then 0.2 s more.
+  /// Returns the ports to which the server sends answers. Waits until there are `expected` ports,
+  /// then 0.2 s more.
   std::set<guint16> Answered(std::size_t expected) {
     std::set<guint16> ports;
     const auto take = [&] {
@@ -122,10 +125,10 @@ class DtlsEnds : public ::testing::Test {
 
   Wire up_, down_;
   SrtpKey server_key_, client_key_;
-  gulong server_key_takes_ = 0;  // microseconds until the server uses its key
+  gulong server_key_takes_ = 0;  // time until the server uses its key [us]
   std::atomic<unsigned> server_keys_{0}, client_keys_{0};
   std::atomic<unsigned> warnings_{0};
-  std::atomic<const char*> warning_{""};  // the last one
+  std::atomic<const char*> warning_{""};  // text of the last warning
   std::atomic<std::uint64_t> sent_{0}, passed_{0};
   std::unique_ptr<DtlsKeys> server_, client_;
 };
@@ -159,7 +162,7 @@ TEST_F(DtlsEnds, TheServerUsesTheKeyBeforeTheClientHasIt) {
   EXPECT_EQ(server_keys_, 1U) << "the client's first packets would be refused";
 }
 
-/// The clock stands still, so that this handshake is the only one.
+/// The clock does not advance, so the client cannot give this handshake up and begin another one.
 TEST_F(DtlsEnds, AgreeOverALinkThatLostTheHelloWhereTheOtherDies) {
   frozen_at = g_get_monotonic_time();
   StartServer();
@@ -221,7 +224,7 @@ TEST_F(DtlsEnds, WhatFollowsAHelloInItsDatagramMakesItNoOtherHello) {
   StartServer();
   for (guint16 port = 5'001; port <= 5'006; ++port) {
     Bytes first = hello.front();
-    first.push_back(static_cast<std::uint8_t>(port));  // the first byte of a second record
+    first.push_back(static_cast<std::uint8_t>(port));  // first byte of a second record
     Give(*server_, {port, first});
   }
   for (std::size_t n = 1; n < hello.size(); ++n) Give(*server_, {5'001, hello[n]});
@@ -232,8 +235,8 @@ TEST_F(DtlsEnds, AServerBeginsFiveHandshakesASecond) {
   auto hello = HelloOfClient();
   frozen_at = g_get_monotonic_time();
   StartServer();
-  // Returns the ports that get answers. A flood has ports of its own, because the server repeats
-  // answers until they are acknowledged.
+  // Sends 20 hellos, and returns the ports that get answers. Each flood has its own ports, because
+  // the server repeats earlier answers until they are acknowledged.
   const auto flood = [&](guint16 first, std::size_t expected) {
     std::set<guint16> answered;
     const auto take = [&] {
@@ -244,8 +247,8 @@ TEST_F(DtlsEnds, AServerBeginsFiveHandshakesASecond) {
     for (guint16 port = first; port < first + 20; ++port) {
       ++hello.front()[kRandomOfHello];
       for (const Bytes& part : hello) Give(*server_, {port, part});
-      // Each hello waits for the answer to the one before, because a new handshake replaces the
-      // oldest of four.
+      // The server keeps only four open handshakes, and a new one replaces the oldest. Therefore
+      // each hello is sent after the server has answered the hello before it.
       const std::size_t due = std::min<std::size_t>(expected, port - first + 1U);
       EXPECT_TRUE(test::Eventually([&] { return take() >= due; }));
     }
@@ -259,7 +262,8 @@ TEST_F(DtlsEnds, AServerBeginsFiveHandshakesASecond) {
   EXPECT_EQ(flood(5'201, 1), std::set<guint16>{5'201});
 }
 
-/// An open handshake also answers another address that sends the same hello.
+/// The server also answers an address that sends the same hello as an open handshake. This shows
+/// which handshakes are still open.
 TEST_F(DtlsEnds, AServerForgetsTheOldestOfFiveHandshakes) {
   const auto hello = HelloOfClient();
   frozen_at = g_get_monotonic_time();
@@ -312,10 +316,11 @@ TEST_F(DtlsEnds, AKeyedClientTakesThePauseBetweenStopAndStartForNoSilence) {
   client_->Stop();
   up_.Take();
   frozen_at += 60 * G_USEC_PER_SEC;
-  server_.reset();  // the server would read the clock, too
+  server_.reset();  // the server would also read the clock
   const unsigned before = test::looks;
   client_->Start();
-  // The client has checked twice for silence, each time with two reads of the clock.
+  // The client reads the clock twice in each check for silence. After four reads it has made two
+  // checks.
   EXPECT_TRUE(test::Eventually([&] { return test::looks >= before + 4; }));
   EXPECT_TRUE(up_.Take().empty());
   frozen_at += 6 * G_USEC_PER_SEC;
@@ -337,7 +342,7 @@ TEST_F(DtlsEnds, AClientTriesAStrangerOnceASecond) {
       return client_->counts().refused == tries && warnings_ > 0;
     }));
     up_.Take();
-    g_usleep(300'000);  // three ticks of the client
+    g_usleep(300'000);  // in this time the client's thread runs three times
     EXPECT_TRUE(up_.Take().empty());
     EXPECT_EQ(warnings_, 1U);
     EXPECT_NE(std::string(warning_).find("another certificate"), std::string::npos) << warning_;
@@ -352,7 +357,7 @@ TEST_F(DtlsEnds, ASilenceIsToldOfOnceAndBehindAKeyAgain) {
   for (unsigned silence = 1; silence <= 2; ++silence) {
     for (int handshake = 0; handshake < 3; ++handshake) {
       ASSERT_TRUE(tries());
-      frozen_at += 6 * G_USEC_PER_SEC;  // the handshake is given up
+      frozen_at += 6 * G_USEC_PER_SEC;  // the client gives the handshake up
     }
     std::vector<Carried> hello;
     ASSERT_TRUE(test::Eventually([&] { return !(hello = up_.Take()).empty(); }));
@@ -368,7 +373,7 @@ TEST_F(DtlsEnds, ASilenceIsToldOfOnceAndBehindAKeyAgain) {
     }));
     server_.reset();
     up_.Take();
-    ++sent_;  // stays unanswered
+    ++sent_;  // the server does not answer this packet
     frozen_at += 6 * G_USEC_PER_SEC;
   }
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A peer of several links: which address becomes one, which links get reports, and which packets
-// are copies.
+// Tests of a peer with several links: which address becomes a link, which links get reports, and
+// which packets count as copies.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -22,11 +22,12 @@ using LinkAddress = std::unique_ptr<GSocketAddress, gst::GObjectUnref>;
 using Verdict = PeerLatch::Verdict;
 
 struct PeerLinks : ::testing::Test {
-  /// Sends a packet. Packets with the same number and salt are equal.
+  /// Sends a packet from the address `from`. Packets with the same number and salt have the same
+  /// bytes.
   Verdict Send(const LinkAddress& from, std::uint16_t number, std::uint64_t salt = 1) {
     return latch.OnPacket(now, {from.get(), 1, number, {}, number * 1000003U + salt});
   }
-  /// Sends each packet over both links. Packets are 10 ms apart.
+  /// Sends each packet over both links, first over `sooner`. The packets are 10 ms apart.
   void SendBoth(const LinkAddress& sooner, const LinkAddress& later, int packets) {
     for (int i = 0; i < packets; ++i, ++seq, now += 10ms) {
       Send(sooner, seq);
@@ -46,7 +47,8 @@ TEST_F(PeerLinks, NoCopiesTakeThePlaceOfALinkThatSends) {
   std::vector<LinkAddress> links;
   for (guint i = 0; i < PeerLatch::kMaxLinks; ++i)
     links.emplace_back(Address("10.3.0.1", 5000 + i));
-  /// Returns how many of the thief's copies were accepted.
+  /// Sends each packet over all links, and then a copy from the thief. Returns how many copies of
+  /// the thief were accepted.
   const auto send_all = [&](int packets) {
     int accepted = 0;
     for (int i = 0; i < packets; ++i, ++seq, now += 10ms) {
@@ -96,7 +98,8 @@ TEST_F(PeerLinks, CopiesThatComeBeforeTheirOriginalsCountToo) {
   EXPECT_EQ(latch.links(), 2U);
 }
 
-// The first packets have no digest: digests are made only after packets from a second address.
+// The first packets have no digest, because digests are computed only after a second address has
+// sent packets.
 TEST_F(PeerLinks, ALinkThatRunsAheadAtTheStartIsNoRival) {
   for (std::uint16_t n = 0; n < PeerLatch::kProbation; ++n)
     latch.OnPacket(now, {first.get(), 1, static_cast<std::uint16_t>(seq + n), {}});
@@ -228,7 +231,7 @@ TEST(LinkStats, HaveEachItsOwnName) {
   }
 }
 
-/// Sends packets and copies of them in any order, over the wrap of their numbers.
+/// Sends packets and their copies in random order, while the sequence numbers wrap.
 TEST(SeenPackets, PassEachOfManyOnceOverTheWrapOfTheirNumbers) {
   SeenPackets seen;
   std::mt19937 random(9);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A pipeline from its launch line, with an owner and patience.
+// A pipeline that is made from a launch line. The test waits for its end.
 #pragma once
 #include <gio/gio.h>
 #include <gst/gst.h>
@@ -16,7 +16,7 @@ namespace lidar::test {
 using gst::ElementPtr;
 using gst::MessagePtr;
 
-/// Returns the port that a source with port=0 has bound; 0 without a socket.
+/// Returns the port that a source with port=0 has bound, or 0 if the source has no socket.
 inline guint PortOf(GstElement* source) {
   GSocket* socket = nullptr;
   g_object_get(source, "used-socket", &socket, nullptr);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Stock retransmission and FEC around screamtx and screamrx, over a wire that loses packets.
+// Tests of GStreamer's own retransmission and FEC elements around screamtx and screamrx. The wire
+// between them loses packets.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +22,7 @@ struct Repair {
   const char* name;
   std::string sender, receiver;
   const char* repairer;
-  const char* counter;  // property with the number of repaired packets
+  const char* counter;  // property of the repairer with the number of repaired packets
   guint ssrcs;
 };
 void PrintTo(const Repair& r, std::ostream* out) { *out << r.name; }
@@ -48,7 +49,8 @@ struct Wire {
   int media = 0;
   int lost = 0;
 };
-/// Drops media packets evenly, except near both ends: a loss at the end is not repaired.
+/// Drops media packets at equal distances, but none near the start or the end, because a packet
+/// that is lost at the end is not repaired.
 GstPadProbeReturn Lose(GstPad*, GstPadProbeInfo* info, gpointer data) {
   Wire& wire = *static_cast<Wire*>(data);
   if (ReadRtp(GST_PAD_PROBE_INFO_BUFFER(info)).payload_type != kMediaType) return GST_PAD_PROBE_OK;
@@ -60,7 +62,8 @@ GstPadProbeReturn Lose(GstPad*, GstPadProbeInfo* info, gpointer data) {
 
 void Count(GstElement*, GstBuffer*, GstPad*, int* arrived) { ++*arrived; }
 
-/// Carries reports back to the sender by a call, because a link of pads would close a loop.
+/// Carries reports back to the sender by a function call, because a link between pads would make a
+/// loop in the pipeline.
 GstPadProbeReturn Back(GstPad*, GstPadProbeInfo* info, gpointer rtcp_sink) {
   gst_pad_chain(GST_PAD(rtcp_sink), gst_buffer_ref(GST_PAD_PROBE_INFO_BUFFER(info)));
   return GST_PAD_PROBE_DROP;
@@ -101,7 +104,7 @@ TEST_P(RepairTest, BringsBackWhatTheWireLostAndCongestionControlSeesItAll) {
   guint repaired = 0;
   g_object_get(pipeline.Get(repair.repairer).get(), repair.counter, &repaired, nullptr);
   EXPECT_GE(repaired, static_cast<guint>(lost / 2));
-  // On a busy machine the jitter buffer may give packets up before they come.
+  // On a busy machine repaired packets may arrive after the jitter buffer has given them up.
   const auto jitter = [&](const char* name) {
     return static_cast<int>(StatOf(pipeline.Get("jitter").get(), name));
   };
@@ -115,7 +118,7 @@ TEST_P(RepairTest, BringsBackWhatTheWireLostAndCongestionControlSeesItAll) {
   EXPECT_EQ(received["packets-received"], sent["packets-sent"] - static_cast<guint64>(lost));
   EXPECT_EQ(received["ssrcs"], repair.ssrcs);
   EXPECT_EQ(sent["feedback-foreign-blocks"], 0U);
-  // The stream may end before the report of its last packets.
+  // The stream may end before the last packets are reported.
   EXPECT_NEAR(static_cast<double>(sent["packets-lost"]), lost, 1);
   EXPECT_GE(sent["packets-acked"] + 40, received["packets-received"]);
 }

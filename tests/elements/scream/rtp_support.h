@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// RTP and RTCP buffers, a test clock in place of the system's, and elements' statistics.
+// Functions for RTP and RTCP buffers and for the statistics of elements, and a test clock that
+// replaces the system clock.
 #pragma once
 #include <gio/gio.h>
 #include <gst/check/gsttestclock.h>
@@ -36,11 +37,11 @@ struct Rtp {
   bool marker = false;
   guint32 ssrc = 0x1234;
   guint8 payload_type = 96;
-  guint size = 1188;  // of the payload, if `payload` is empty
+  guint size = 1188;  // of the payload, if `payload` is empty [bytes]
   std::vector<std::uint8_t> payload{};
 };
 
-/// Returns the payload of a packet with a whole slice.
+/// Returns the payload of an RTP packet that contains a whole slice.
 inline std::vector<std::uint8_t> WholeSlice(std::uint64_t capture_ntp = 0) {
   lidar::rtp::Unit unit;
   const std::vector<std::uint8_t> bytes(100, 7);
@@ -64,7 +65,7 @@ inline GstBuffer* NewRtp(const Rtp& r) {
   gst_rtp_buffer_set_marker(&rtp, r.marker);
   gst_rtp_buffer_set_ssrc(&rtp, r.ssrc);
   gst_rtp_buffer_set_payload_type(&rtp, r.payload_type);
-  // Packets with equal fields are equal byte for byte.
+  // Sets the whole payload to 0 first, so that packets with equal fields are equal byte for byte.
   auto* payload = static_cast<std::uint8_t*>(gst_rtp_buffer_get_payload(&rtp));
   std::fill_n(payload, size, std::uint8_t{0});
   std::copy(r.payload.begin(), r.payload.end(), payload);
@@ -108,12 +109,12 @@ inline void SetSource(GstBuffer* buffer, const char* host, guint port) {
   g_object_unref(address);
 }
 
-/// The property `stats` of an element.
+/// A copy of the property `stats` of an element.
 class Stats {
  public:
   explicit Stats(GstElement* element) : stats_(StatsOf(element)) {}
   explicit Stats(const GstStructure* stats) : stats_(gst_structure_copy(stats)) {}
-  /// Returns member `index` of the array `name`.
+  /// Returns the element `index` of the array `name`, which is itself a structure.
   Stats Of(const char* name, guint index) const {
     const GValue* array = gst_structure_get_value(stats_.get(), name);
     if (array == nullptr || gst_value_array_get_size(array) <= index) {
@@ -148,7 +149,7 @@ class Stats {
   StructurePtr stats_;
 };
 
-/// A clock that only the test moves, in place of the system clock.
+/// A clock that replaces the system clock. Only the test advances it.
 class FakeTime {
  public:
   FakeTime() : clock_(gst_test_clock_new_with_start_time(1000 * GST_SECOND)) {
@@ -163,7 +164,7 @@ class FakeTime {
 
   GstTestClock* clock() const { return GST_TEST_CLOCK(clock_); }
   GstClockTime now() const { return gst_clock_get_time(clock_); }
-  /// Moves to `goal`, and wakes each waiter at its time.
+  /// Advances the clock to `goal`. Wakes each thread that waits on the clock when its time comes.
   void AdvanceTo(GstClockTime goal) {
     for (;;) {
       GstClockID id = nullptr;
@@ -176,7 +177,7 @@ class FakeTime {
     }
     if (goal > now()) gst_test_clock_set_time(clock(), goal);
   }
-  /// Returns once the element's thread has finished its work and waits on the clock.
+  /// Waits until the element's thread has finished its work and waits on the clock.
   void Settle() const { gst_test_clock_wait_for_next_pending_id(clock(), nullptr); }
   void Advance(GstClockTime time) { AdvanceTo(now() + time); }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// How screamsink and screamsrc set up their elements, mostly without a packet.
+// Tests of how screamsink and screamsrc set up their child elements. Most of them send no packet.
 #include <glib/gstdio.h>
 #include <gtest/gtest.h>
 
@@ -34,7 +34,7 @@ class ScreamBin : public ::testing::Test {
     g_object_get(element, property, &value, nullptr);
     return value;
   }
-  /// Returns the bin's first element that the factory `name` made.
+  /// Returns the first element of the bin whose factory is `name`.
   ElementPtr OfFactory(const char* name) {
     GstIterator* all = gst_bin_iterate_all_by_element_factory_name(GST_BIN(bin_.get()), name);
     GValue value = G_VALUE_INIT;
@@ -55,7 +55,8 @@ class ScreamBin : public ::testing::Test {
     return OwnedSocket(Of<GSocket*>(element, property));
   }
 
-  // Records of the bin's signals outlive the bin, which emits signals while it is freed.
+  // These records of the bin's signals must outlive the bin, because the bin emits signals while it
+  // is freed.
   std::string added_, removed_;
   int notified_ = 0;
   OwnedElement bin_;
@@ -91,7 +92,8 @@ TEST_F(ScreamBin, TheSinkCountsWhatSrtpAdds) {
     ASSERT_EQ(To(GST_STATE_READY), GST_STATE_CHANGE_SUCCESS) << kind.cipher;
     EXPECT_EQ(Of<guint>(Child("screamtx").get(), "packet-overhead"), 28 + kind.tag)
         << kind.cipher << " " << kind.auth;
-    // The peer's decoder would refuse reports with another cipher or authentication.
+    // Reports are encrypted with the same cipher and authentication, because the peer's decoder
+    // would refuse others.
     const bool authenticates = std::string(kind.cipher).find("gcm") != std::string::npos;
     const ElementPtr encoder = OfFactory("srtpenc");
     ASSERT_TRUE(encoder);
@@ -103,7 +105,8 @@ TEST_F(ScreamBin, TheSinkCountsWhatSrtpAdds) {
   }
 }
 
-/// The bin would start again without encryption if it dropped the key.
+/// If the bin dropped its key when it refuses another one, it would start the next time without
+/// encryption.
 TEST_F(ScreamBin, AKeyThatIsRefusedWhileItRunsLeavesTheOneBefore) {
   const ElementPtr srtp(gst_element_factory_make("srtpenc", nullptr));
   if (!srtp) GTEST_SKIP() << "srtpenc is not installed";
@@ -386,7 +389,8 @@ TEST_F(ScreamBin, StatisticsHaveWhatTheSocketsCount) {
   EXPECT_EQ(Stats(bin_.get())["dropped-by-kernel"], 0U);
 }
 
-/// Pushes feedback as the sink's socket does: alone or in a list.
+/// A screamsink to which the test pushes feedback as its socket source does: single buffers or
+/// lists.
 class ScreamFeedbackFilter : public ScreamBin {
  protected:
   void Start(const char* host, bool strict) {
@@ -400,7 +404,8 @@ class ScreamFeedbackFilter : public ScreamBin {
       return GST_PAD_PROBE_OK;
     };
     gst_pad_add_probe(behind.get(), GST_PAD_PROBE_TYPE_BUFFER, count, &taken_, nullptr);
-    // The source waits for its socket, so the test can push from the source's pad.
+    // ecnudpsrc itself pushes nothing while its socket receives nothing, so the test can push from
+    // its source pad.
     pad_.reset(gst_element_get_static_pad(Child("ecnudpsrc").get(), "src"));
     gst_pad_push_event(pad_.get(), gst_event_new_stream_start("feedback"));
     const gst::CapsPtr caps(gst_caps_new_empty_simple("application/x-rtcp"));
@@ -409,13 +414,13 @@ class ScreamFeedbackFilter : public ScreamBin {
   }
   static GstBuffer* From(const char* address, guint port) {
     GstBuffer* buffer = gst_buffer_new_allocate(nullptr, 12, nullptr);
-    gst_buffer_memset(buffer, 0, 0, 12);  // no RTCP
+    gst_buffer_memset(buffer, 0, 0, 12);  // not RTCP
     GSocketAddress* from = g_inet_socket_address_new_from_string(address, port);
     gst_buffer_add_net_address_meta(buffer, from);
     g_object_unref(from);
     return buffer;
   }
-  /// Returns how many packets passed, and how many did not.
+  /// Returns the number of packets that passed and the number of packets that were dropped.
   std::pair<guint64, guint64> Counts() {
     return {taken_, Stats(bin_.get())["feedback-foreign-address"]};
   }
@@ -434,7 +439,7 @@ TEST_F(ScreamFeedbackFilter, TakesItFromHostAndPortOrFromTheHost) {
     EXPECT_EQ(Counts(), strict ? Pair(1, 1) : Pair(2, 0));
     gst_pad_push(pad_.get(), From("127.0.0.2", 5004));
     EXPECT_EQ(Counts(), strict ? Pair(1, 2) : Pair(2, 1));
-    gst_pad_push(pad_.get(), gst_buffer_new_allocate(nullptr, 12, nullptr));  // without an address
+    gst_pad_push(pad_.get(), gst_buffer_new_allocate(nullptr, 12, nullptr));  // has no address
     EXPECT_EQ(Counts(), strict ? Pair(1, 3) : Pair(2, 2));
     To(GST_STATE_NULL);
     To(GST_STATE_READY);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The parts of the SCReAM elements that need no pad: RTP headers, goodbyes, the receiver's latch.
+// Tests of the parts of the SCReAM elements that need no pads, for example RTP headers, goodbyes,
+// and the receiver's latch.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <net/if.h>
@@ -82,7 +83,8 @@ INSTANTIATE_TEST_SUITE_P(
                       std::vector<std::uint8_t>{0x90, 96, 0, 1, 0, 0, 0, 0, 0, 0, 0, 7, 0, 0, 0xff,
                                                 0xff}));  // extensions past the end
 
-/// The pad has no peer that answers a latency query, so the stream counts as live.
+/// The pad has no peer that answers a latency query. In this case the gate treats the stream as
+/// live.
 TEST(KeyGate, CountsEachPacketThatItDropsAndPassesAllOnceItIsOpen) {
   const auto gate = std::make_shared<KeyGate>();
   const PadPtr pad(GST_PAD(gst_object_ref_sink(gst_pad_new("sink", GST_PAD_SINK))));
@@ -139,7 +141,7 @@ TEST(Rtcp, IsToldFromRtpByItsSecondByte) {  // RFC 5761, section 4
 TEST(Bye, RoundTripsThroughACompound) {
   const auto bye = BuildBye({1, 0xfffffffe});
   EXPECT_TRUE(IsRtcp({bye.data(), bye.size()}));
-  EXPECT_EQ(bye[1], 201);  // a compound begins with a report
+  EXPECT_EQ(bye[1], 201);  // a compound packet begins with a report
   EXPECT_EQ(ParseBye({bye.data(), bye.size()}), (std::vector<guint32>{1, 0xfffffffe}));
   EXPECT_TRUE(BuildBye({}).empty());
 }
@@ -171,7 +173,7 @@ struct Latch : ::testing::Test {
     const ByteView payload = with_slice ? ByteView{kSlice.data(), kSlice.size()} : ByteView{};
     return latch.OnPacket(now, {from.get(), ssrc, seq, payload});
   }
-  /// Sends a packet each 10 ms. Returns true if the latch moved.
+  /// Sends one packet every 10 ms. Returns true if the latch moved to another peer.
   bool Stream(const AddressPtr& from, std::uint32_t ssrc, std::uint16_t first, int packets,
               bool with_slices = false) {
     bool moved = false;
@@ -264,11 +266,12 @@ TEST(WakeFd, StaysWokenUntilItIsClearedAndComesBeforeData) {
 struct Destination {
   const char* address;
   GSocketFamily of_socket;
-  bool is_v4;  // the IPv4 stack sends
+  bool is_v4;  // the IPv4 stack sends the datagram
 };
 class UdpControl : public ::testing::TestWithParam<Destination> {};
 
-/// Returns the value of the control message of `level` and `type`, if there is one.
+/// Returns the value of the control message with this `level` and `type`, or nothing if there is
+/// none.
 template <class Value>
 std::optional<Value> ControlOf(msghdr* message, int level, int type) {
   for (cmsghdr* c = CMSG_FIRSTHDR(message); c != nullptr; c = CMSG_NXTHDR(message, c)) {
@@ -306,7 +309,8 @@ INSTANTIATE_TEST_SUITE_P(All, UdpControl,
                                            Destination{"10.0.0.1", G_SOCKET_FAMILY_IPV6, true},
                                            Destination{"fd00::1", G_SOCKET_FAMILY_IPV6, false}));
 
-/// The receiving queue of a Unix socket can fill up, unlike that of UDP, which drops.
+/// This test uses a Unix socket, because its receive queue can fill up and block the sender. A UDP
+/// socket would drop datagrams instead.
 TEST(UdpBatch, WhatWaitsForAFullSocketIsGivenUpWhenTheElementStops) {
   const auto unix_socket = [] { return socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0); };
   const int receiver = unix_socket(), sender = unix_socket();
@@ -401,9 +405,9 @@ TEST_F(Latch, WhoSendsFirstAndSeldomLosesThePlaceToTheFirstStream) {
 }
 
 TEST_F(Latch, AStreamWithoutSlicesNeitherKeepsNorTakesThePlaceOfOneWithSlices) {
-  Stream(thief, 9, 0, 500);  // first, and often
+  Stream(thief, 9, 0, 500);  // the thief sends before the robot, and for a longer time
   EXPECT_TRUE(Stream(robot, 1, 0, 10, true));
-  now += 1s;  // an outage
+  now += 1s;  // the robot's link is interrupted
   EXPECT_FALSE(Stream(thief, 9, 500, 200));
   EXPECT_TRUE(latch.IsPeer(robot.get()));
 }
@@ -412,10 +416,10 @@ TEST_F(Latch, TheSenderComesBackWhenAnotherTookItsPlaceInAnOutage) {
   Stream(robot, 1, 0, 100, true);
   now += 6s;
   EXPECT_TRUE(Stream(thief, 9, 0, 20));
-  EXPECT_TRUE(Stream(robot, 1, 150, 6));  // the thief still sends
+  EXPECT_TRUE(Stream(robot, 1, 150, 6));  // the thief sent until just before this
   now += 1s;
-  EXPECT_TRUE(Stream(thief, 9, 20, 20, true));  // slices of its own
-  EXPECT_TRUE(Stream(other, 1, 200, 6));        // the sender, moved
+  EXPECT_TRUE(Stream(thief, 9, 20, 20, true));  // the thief makes slices of its own
+  EXPECT_TRUE(Stream(other, 1, 200, 6));        // the sender's address has changed
   EXPECT_FALSE(Stream(thief, 9, 40, 40, true));
 }
 
@@ -464,7 +468,7 @@ TEST_F(Latch, TheSenderComesBackWhenAnotherBeganTheNextSession) {
 TEST_F(Latch, AKnownSsrcIsNotKnownTwiceInTheNextSession) {
   Stream(robot, 1, 0, 100, true);
   latch.Restart();
-  Stream(robot, 1, 100, 100);  // a sender with that SSRC begins, and goes on
+  Stream(robot, 1, 100, 100);  // a new sender with that SSRC
   EXPECT_FALSE(Stream(thief, 1, 150, 20, true));
 }
 
@@ -528,12 +532,12 @@ TEST_F(Latch, FeedbackFromAnotherAddressIsANewPathOnceTheOldOneIsSilent) {
   EXPECT_FALSE(peer.OnFeedback(now + 400ms, robot.get()));
   EXPECT_TRUE(peer.OnFeedback(now + 1s, thief.get()));
   EXPECT_FALSE(peer.OnFeedback(now + 1s, nullptr));
-  EXPECT_TRUE(peer.OnFeedback(now - 1h, robot.get()));  // the clock was set back
+  EXPECT_TRUE(peer.OnFeedback(now - 1h, robot.get()));  // after the clock was set back
 }
 
 DataRate Bps(int n) { return DataRate::BitsPerSecond(n); }
 
-/// Expects that the fields `names` of `shown` have the values 1, 2, ... in this order.
+/// Expects that the fields `names` of `shown` have the values 1, 2, and so on, in this order.
 void ExpectInOrder(const StructurePtr& shown, const std::vector<const char*>& names) {
   const test::Stats stats(shown.get());
   for (std::size_t i = 0; i < names.size(); ++i) EXPECT_EQ(stats[names[i]], i + 1) << names[i];
@@ -672,7 +676,7 @@ TxSettings Tuned(const char* tuning) {
   return settings;
 }
 
-/// Values of tunables, as numbers.
+/// Returns the value of a tunable member of `p` as a number.
 struct TunableValue {
   const scream::Parameters& p;
   double operator()(bool scream::Extensions::*m) const { return p.extensions.*m; }

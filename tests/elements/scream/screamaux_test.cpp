@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// screamaux before a session whose events the test sends, and before stock rtpbin.
+// Tests of screamaux before a session whose events the test sends, and before GStreamer's own
+// rtpbin.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -20,7 +21,7 @@ struct Told {
   guint64 arrival = GST_SECOND;
 };
 
-/// Returns a report in the form of rtpsession's event.
+/// Returns a report about `packets`, as the event that rtpsession sends upstream.
 GstEvent* Report(const std::vector<Told>& packets) {
   GValue list = G_VALUE_INIT;
   g_value_init(&list, g_type_from_name("GValueArray"));
@@ -51,10 +52,10 @@ class ScreamAux : public ::testing::Test {
   GstElement* element = gst_element_factory_make("screamaux", nullptr);
   Harness harness{gst_harness_new_with_element(element, "sink", "src")};
   guint16 seq = 65534;
-  guint8 extension = kExtension;  // id of the extension that has the number
+  guint8 extension = kExtension;  // id of the RTP header extension with the packet's number
 
   void SetUp() override {
-    // GObject registers GValueArray, the type of the list, at its first use.
+    // GObject registers the type GValueArray only when it is used for the first time.
     g_type_class_ref(G_TYPE_OBJECT);
     ASSERT_NE(g_type_from_name("GValueArray"), G_TYPE_INVALID);
     SetCaps();
@@ -63,7 +64,7 @@ class ScreamAux : public ::testing::Test {
     gst_harness_set_src_caps_str(
         harness.get(), (std::string(kRtpCaps) + ",extmap-3=(string)" + rtcp::kTwccUri).c_str());
   }
-  /// Plays again after a pause in READY.
+  /// Stops the element and plays it again.
   void Restart() {
     gst_element_set_state(element, GST_STATE_READY);
     gst_element_set_state(element, GST_STATE_PLAYING);
@@ -91,7 +92,7 @@ class ScreamAux : public ::testing::Test {
     }
     ASSERT_EQ(gst_harness_push(harness.get(), buffer), GST_FLOW_OK);
   }
-  /// Advances time. Returns the number of packets that left.
+  /// Advances the time. Returns the number of packets that the element has sent.
   int Leave(int rounds = 20) {
     int packets = 0;
     for (int i = 0; i < rounds; ++i) {
@@ -141,14 +142,14 @@ TEST_F(ScreamAux, TheSizeOfAPacketIsKnownAsLongAsAReportMayTellOfIt) {
   for (const guint size : {99U, 101U, 1200U}) Tell({{0, size}});
   EXPECT_EQ(Stat("twcc-mismatched"), 3U);
   EXPECT_EQ(Stat("packets-acked"), 0U);
-  // A wrong packet makes the whole report wrong.
+  // A single packet with a wrong size makes the whole report invalid.
   Tell({{0}, {1}, {2, 99}});
   EXPECT_EQ(Stat("twcc-mismatched"), 4U);
   EXPECT_EQ(Stat("twcc-packets"), 0U);
-  Tell({{0, 0}, {1}});  // from a session that does not report sizes
+  Tell({{0, 0}, {1}});  // a session may not report sizes
   EXPECT_EQ(Stat("packets-acked"), 2U);
   EXPECT_EQ(Stat("twcc-packets"), 2U);
-  Tell({{40}});  // not sent yet
+  Tell({{40}});  // number 40 was not sent yet
   EXPECT_EQ(Stat("twcc-mismatched"), 4U);
 }
 
@@ -158,7 +159,7 @@ TEST_F(ScreamAux, TheTimesOfAReportMayReachIntoASecondPeriodOfItsClock) {
   constexpr auto kPeriod = static_cast<guint64>(rtcp::kTwccPeriod.count());
   Tell({{0, 100, false, kPeriod + GST_SECOND}, {1, 100, false, kPeriod + GST_SECOND}});
   EXPECT_EQ(Stat("packets-acked"), 2U);
-  Tell({{2, 100, false, 2 * kPeriod + 1}});  // beyond what a report can express
+  Tell({{2, 100, false, 2 * kPeriod + 1}});  // later than a report can express
   EXPECT_EQ(Stat("packets-acked"), 2U);
 }
 
@@ -166,7 +167,7 @@ TEST_F(ScreamAux, NoReportReachesFurtherThanItsFormat) {
   Push();
   ASSERT_EQ(Leave(), 1);
   constexpr guint kMost = rtcp::kMaxTwccPackets;
-  Tell({{0}, {kMost - 1}});  // may have been sent meanwhile
+  Tell({{0}, {kMost - 1}});  // the second packet may have been sent meanwhile
   EXPECT_EQ(Stat("twcc-mismatched"), 0U);
   Tell({{0}, {kMost}});
   EXPECT_EQ(Stat("twcc-mismatched"), 1U);
@@ -187,7 +188,7 @@ TEST_F(ScreamAux, FindsTheExtensionByItsUriHoweverCapsHaveIt) {
     extension = 14;
     Push();
     extension = kExtension;
-    Push();  // its number is in another extension
+    Push();  // its number is in the other extension
     ASSERT_EQ(Leave(), 3);
     Tell({{next++}});
     EXPECT_EQ(Stat("packets-acked"), before + 1) << extmap;
@@ -220,10 +221,10 @@ TEST(ScreamAuxSettings, FitASessionWithTransportWideFeedback) {
   gint ecn = -1;
   g_object_get(tx.get(), "packet-overhead", &overhead, "feedback-interval", &interval, "ecn-mode",
                &ecn, nullptr);
-  EXPECT_EQ(overhead, 20U + 8 + 10);  // IPv4, UDP and the tag of SRTP
+  EXPECT_EQ(overhead, 20U + 8 + 10);  // the headers of IPv4 and UDP, and the tag of SRTP
   EXPECT_EQ(interval, 500 * GST_MSECOND);
   EXPECT_EQ(ecn, 0);
-  // screamaux has the estimate of its screamtx.
+  // screamaux shows the estimate of its screamtx, and also passes its notifications on.
   g_signal_connect(element.get(), "notify::estimated-bitrate",
                    G_CALLBACK(+[](GObject*, GParamSpec*, int* n) { ++*n; }), &notified);
   g_object_notify(G_OBJECT(tx.get()), "estimated-bitrate");
@@ -247,8 +248,8 @@ TEST_F(ScreamAux, AbsurdReportsDoNoHarm) {
 }
 
 TEST_F(ScreamAux, MeasuresDelayInTicksOfTheReport) {
-  // Two packets of a report arrive 21 ms apart. If times were in 1/1024 s, the first would seem to
-  // come almost half a millisecond earlier.
+  // The two packets of each report arrive 21 ms apart. If the element read the arrival times in
+  // units of 1/1024 s, the first packet would seem to arrive almost half a millisecond too early.
   constexpr guint64 kTick = 250 * GST_USECOND;
   guint number = 0;
   for (int report = 0; report < 8; ++report) {
@@ -257,9 +258,10 @@ TEST_F(ScreamAux, MeasuresDelayInTicksOfTheReport) {
       time.Advance(11 * GST_MSECOND);
       Push();
       ASSERT_EQ(Leave(1), 1);
-      // All packets of the last report waited for one tick.
+      // The packets of the last report are delayed by one tick more than those before.
       const guint64 delay = 40 * kTick + (report == 7 ? kTick : 0);
-      told.push_back({number++, 100, false, time.now() + delay - i * GST_MSECOND});  // as Report()
+      // Report() adds i ms.
+      told.push_back({number++, 100, false, time.now() + delay - i * GST_MSECOND});
     }
     Tell(told);
   }
@@ -270,12 +272,12 @@ TEST_F(ScreamAux, ForgetsTheExtensionWhereNewCapsHaveNone) {
   Push();
   ASSERT_EQ(Leave(), 1);
   gst_harness_set_src_caps_str(harness.get(), kRtpCaps);
-  Push();  // the extension's id now means something else
+  Push();  // with these caps, the extension's id has another meaning
   ASSERT_EQ(Leave(), 1);
   SetCaps();
   Push();
   ASSERT_EQ(Leave(), 1);
-  Tell({{0}, {1}, {2}});  // there is no number 2
+  Tell({{0}, {1}, {2}});  // only two packets have a number
   EXPECT_EQ(Stat("packets-acked"), 2U);
 }
 
@@ -284,7 +286,8 @@ TEST_F(ScreamAux, ReportsThatAnAttackerMakesUpMoveNothing) {
   const int sent = Leave();
   ASSERT_GT(sent, 2);
   const guint64 target = Stat("target-bitrate");
-  // Reports of packets that were never sent, with wrong sizes, and with absurd times of arrival.
+  // These reports are about packets that were never sent, about packets with wrong sizes, or
+  // contain impossible arrival times.
   for (guint first : {100U, 20000U, 65000U}) Tell({{first}, {first + 1}, {first + 2}});
   Tell({{0, 1200}, {1, 1200}});
   for (guint64 arrival : {guint64{1}, guint64{12 * 24 * 3600} * GST_SECOND, G_MAXUINT64 / 2}) {
@@ -292,7 +295,7 @@ TEST_F(ScreamAux, ReportsThatAnAttackerMakesUpMoveNothing) {
     t.arrival = arrival;
     Tell({t});
   }
-  for (int i = 0; i < 100; ++i) Tell({{0}, {1}});  // again and again
+  for (int i = 0; i < 100; ++i) Tell({{0}, {1}});  // the same report many times
   EXPECT_LE(Stat("packets-acked"), 2U);
   EXPECT_EQ(Stat("packets-lost"), 0U);
   EXPECT_LE(Stat("target-bitrate"), 2 * target);
@@ -366,8 +369,8 @@ TEST_F(ScreamAux, TellsTheEncoderItsTargetAndHasTheSendersProperties) {
   EXPECT_TRUE(told);
 }
 
-/// Sender and receiver are stock rtpbins. The only element of ours is screamaux, before the
-/// sender's rtpbin or in it, where request-aux-sender puts it.
+/// The sender and the receiver are GStreamer's own rtpbins. screamaux is either linked before the
+/// sender's rtpbin, or inside it by the signal request-aux-sender.
 class ScreamAuxWithRtpbin : public ::testing::TestWithParam<bool> {};
 TEST_P(ScreamAuxWithRtpbin, TheReceiversReportsMoveTheTarget) {
   const bool inside = GetParam();

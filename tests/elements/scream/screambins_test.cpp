@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// screamsink and screamsrc over real loopback sockets.
+// Tests of screamsink and screamsrc with real sockets of the loopback interface.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -15,7 +15,7 @@ using gst::ElementPtr;
 using gst::MessagePtr;
 using gst::PadPtr;
 
-/// A receiver of raw audio that plays, and its port.
+/// A playing receiver of raw audio, and its port.
 struct Receiver {
   explicit Receiver(const std::string& properties = "", const std::string& rest = "rtpL16depay")
       : pipeline("screamsrc name=in port=0 " + properties + " ! " + rest +
@@ -179,7 +179,8 @@ TEST(ScreamBins, InputThatIsNotLiveTakesItsTimeAfterAFlushingSeekToo) {
   EXPECT_TRUE(Eventually([&] { return Stats(out.get())["packets-sent"] >= sent + 100; }));
   const auto after = static_cast<double>(Stats(out.get())["packets-sent"] - sent);
   const double seconds = static_cast<double>(g_get_monotonic_time() - start) / 1e6;
-  EXPECT_LE(after, 100 * seconds + 25);  // packets of 10 ms, and what the queue may contain
+  // One packet per 10 ms, and the packets that the queue may contain.
+  EXPECT_LE(after, 100 * seconds + 25);
 }
 
 TEST(ScreamBins, MoreThanTheNetworkTakesIsHeldBackNotDroppedWhereInputIsNotLive) {
@@ -275,7 +276,8 @@ TEST(ScreamBins, SeveralStreamsShareOnePath) {
 }
 
 TEST(ScreamBins, AStreamThatNoElementTakesIsAnErrorThatNamesTheDepayloader) {
-  Pipeline receiver("screamsrc name=in port=0 ! lidardec ! fakesink");  // linked when a pad fits
+  // Lidardec is linked when a suitable pad is added.
+  Pipeline receiver("screamsrc name=in port=0 ! lidardec ! fakesink");
   receiver.Play();
   Pipeline sender(kAudio + Sink(PortOf(receiver.Get("in").get())));
   sender.Play();

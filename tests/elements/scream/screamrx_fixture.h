@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A screamrx between harnesses, under a test clock.
+// A fixture with a screamrx between harnesses, under a test clock.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -50,8 +50,8 @@ class ScreamRx : public ::testing::Test {
     if (host != nullptr) SetSource(buffer, host, port);
     return gst_harness_push(rtp.get(), buffer);
   }
-  /// Starts with payload type 96 in pt-map, and with `caps` after `src`. Byes do not end the
-  /// stream.
+  /// Starts with payload type 96 in pt-map, and with `caps` after the pad `src`. A goodbye does not
+  /// end the stream.
   void StartAndOutliveByes(const char* caps) {
     SetPtMap(
         "96=(string)\"application/x-rtp,media=application,clock-rate=90000,encoding-name=TEST\"");
@@ -78,7 +78,8 @@ class ScreamRx : public ::testing::Test {
     EXPECT_TRUE(report);
     return report.value_or(CongestionFeedback{});
   }
-  /// Pushes the first packet of all. screamrx reports it at once, unlike later packets.
+  /// Pushes the very first packet. screamrx reports this packet at once, but later packets only
+  /// after some time.
   void PushFirst(guint16 seq) {
     Rtp r;
     r.seq = seq;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The streams of a screamrx: how they end, their sender's reports, and the pad of each.
+// Tests of the streams of a screamrx: how they end, the reports of their sender, and their pads.
 #include "tests/elements/scream/screamrx_fixture.h"
 #include "tests/support/element_bus.h"
 
@@ -13,7 +13,7 @@ TEST_F(ScreamRx, EndsWhenEveryStreamSaidGoodbye) {
   ASSERT_EQ(Push({}), GST_FLOW_OK);
   ASSERT_EQ(Push(other), GST_FLOW_OK);
   EXPECT_EQ(PushBye({0x1234}), GST_FLOW_OK);
-  EXPECT_EQ(PushBye({0x9999}), GST_FLOW_OK);  // of an unknown SSRC
+  EXPECT_EQ(PushBye({0x9999}), GST_FLOW_OK);  // for an unknown SSRC
   EXPECT_EQ(Push(other), GST_FLOW_OK);
   EXPECT_EQ(PushBye({0x5678}), GST_FLOW_EOS);
   EXPECT_EQ(Push(other), GST_FLOW_EOS);
@@ -79,7 +79,7 @@ TEST_F(ScreamRx, ShowsWhatItsSenderReports) {
   EXPECT_EQ(stats["sender-queue-delay"], 3 * GST_MSECOND);
   EXPECT_EQ(stats["sender-packets-lost"], 11U);
   EXPECT_EQ(stats["sender-report-age"], 250 * GST_MSECOND);
-  report.time_ms += 1000;  // over the wrap of the time
+  report.time_ms += 1000;  // the time wraps
   report.packets_lost = 12;
   ASSERT_EQ(PushReport(report), GST_FLOW_OK);
   EXPECT_EQ(Stats(element)["sender-packets-lost"], 12U);
@@ -131,7 +131,7 @@ TEST_F(ScreamRx, BelievesNoReportThatIsOldOrOfSomebodyElse) {
   report.ssrc = 0x1234;
   report.time_ms = 5000;
   ASSERT_EQ(PushReport(report), GST_FLOW_OK);
-  ASSERT_EQ(PushReport(report), GST_FLOW_OK);  // twice
+  ASSERT_EQ(PushReport(report), GST_FLOW_OK);  // the same report again
   report.time_ms = 4000;
   ASSERT_EQ(PushReport(report), GST_FLOW_OK);
   report.time_ms = 6000;
@@ -195,7 +195,7 @@ TEST_F(ScreamRx, GivesEachStreamAPadOfItsOwnWithPtMap) {
     Rtp lidar;
     lidar.seq = seq;
     ASSERT_EQ(Push(lidar), GST_FLOW_OK);
-    Rtp repair;  // not in the map: stays with the first stream
+    Rtp repair;  // its payload type is not in pt-map, so it shares the first stream's pad
     repair.ssrc = 0x9abc;
     repair.payload_type = 110;
     repair.seq = seq;
@@ -253,7 +253,7 @@ TEST_F(ScreamRx, RestartedStreamsKeepTheirOrderOfPads) {
     r.ssrc = ssrc;
     for (; r.seq < 6; ++r.seq) EXPECT_EQ(Push(r), GST_FLOW_OK) << ssrc;
   };
-  push(20);  // gets the pad `src`
+  push(20);  // this stream gets the pad `src`
   push(10);
   Harness second(gst_harness_new_with_element(element, nullptr, "src_10"));
   push(10);
@@ -267,7 +267,7 @@ TEST_F(ScreamRx, RestartedStreamsKeepTheirOrderOfPads) {
   EXPECT_EQ(received(), std::pair(12U, 6U));
   push(40);
   EXPECT_EQ(received(), std::pair(12U, 12U));
-  push(10);  // its pad has another stream now
+  push(10);  // its pad now belongs to another stream
   EXPECT_EQ(received(), std::pair(12U, 12U));
   EXPECT_TRUE(gst::PadPtr(gst_element_get_static_pad(element, "src_11")));
 }
@@ -285,7 +285,7 @@ TEST_F(ScreamRx, ARestartedStreamGetsAPadThatHadItsPayloadType) {
     r.payload_type = type;
     for (; r.seq < 3; ++r.seq) EXPECT_EQ(Push(r), GST_FLOW_OK) << ssrc;
   };
-  push(1, 96);  // gets the pad `src`
+  push(1, 96);  // this stream gets the pad `src`
   push(2, 97);
   Harness video(gst_harness_new_with_element(element, nullptr, "src_2"));
   push(2, 97);
@@ -414,15 +414,16 @@ TEST_F(ScreamRx, MakesSoManyPadsAtMostAndForgetsThemWhenItStops) {
     Rtp camera;
     camera.payload_type = 97;
     camera.size = 10;
-    camera.payload_type = 72;  // looks like RTCP with a marker, so the map may not have it
+    // With a marker bit, 72 looks like RTCP, so it is not used from pt-map.
+    camera.payload_type = 72;
     Push(camera);
     camera.payload_type = 97;
     for (camera.ssrc = 1; camera.ssrc < 1'100; ++camera.ssrc) Push(camera);
     const BufferPtr refused(NewRtp(camera));
     gst_harness_push(rtp.get(), gst_buffer_ref(refused.get()));
     EXPECT_EQ(GST_MINI_OBJECT_REFCOUNT_VALUE(refused.get()), 1) << "it is freed";
-    EXPECT_EQ(Passed(), 2 * static_cast<guint>(round) + 2);  // `src` takes the first stream, too
-    EXPECT_EQ(GST_ELEMENT(element)->numsrcpads, 1'024);      // rtcp_src and `src` among them
+    EXPECT_EQ(Passed(), 2 * static_cast<guint>(round) + 2);  // `src` passes the first stream, too
+    EXPECT_EQ(GST_ELEMENT(element)->numsrcpads, 1'024);      // including rtcp_src and `src`
     EXPECT_EQ(Stats(element)["packets-foreign"], 77U);
     const auto told = bus.Texts(GST_MESSAGE_WARNING);
     EXPECT_EQ(std::count(told.begin(), told.end(), "More than 1024 streams."), 1) << "once a run";

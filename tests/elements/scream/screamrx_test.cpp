@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// screamrx under a test clock: what it reports, to which addresses, and which packets it accepts.
+// Tests of screamrx under a test clock: what it reports, to which addresses it reports, and which
+// packets it accepts.
 #include <atomic>
 #include <set>
 
@@ -54,7 +55,7 @@ TEST_F(ScreamRx, ReportsEachPacketOfAFrameAtItsMarker) {
   PushFirst(65534);
   for (guint16 i = 1; i < 4; ++i) {
     Rtp r;
-    r.seq = static_cast<guint16>(65534 + i);  // over the wrap
+    r.seq = static_cast<guint16>(65534 + i);  // the numbers wrap
     r.marker = i == 3;
     ASSERT_EQ(Push(r, ecns[i]), GST_FLOW_OK);
   }
@@ -140,7 +141,7 @@ TEST_F(ScreamRx, AClockThatWasSetIsNoArrivalTime) {
     ASSERT_EQ(gst_harness_push(rtp.get(), buffer), GST_FLOW_OK);
     const auto offset = Report().blocks.at(0).metrics.back().arrival_offset;
     ASSERT_TRUE(offset) << set_s;
-    EXPECT_LT(Milliseconds(*offset), 100) << set_s;  // the clock of the test stands still
+    EXPECT_LT(Milliseconds(*offset), 100) << set_s;  // the test's clock does not advance
     time.Advance(20 * GST_MSECOND);
   }
 }
@@ -187,7 +188,8 @@ TEST_F(ScreamRx, PassesOnceWhatCameByTwoLinksAndAnswersBoth) {
   EXPECT_EQ(links[1]["packets-received"], 17U);
   EXPECT_EQ(links[1]["bytes-received"], 17U * 1228);
   EXPECT_EQ(links[1]["packets-ce"], 1U);
-  // The first copies only showed that the second address is a link.
+  // The first three copies count as foreign packets, because the second address was not yet known
+  // as a link of the peer.
   EXPECT_EQ(Stats(element)["packets-foreign"], 3U);
   EXPECT_EQ(Stats(element)["packets-copies"], 17U);
 }
@@ -214,7 +216,8 @@ TEST_F(ScreamRx, FollowsASenderThatComesBackFromAnotherAddress) {
     r.seq = seq;
     ASSERT_EQ(Push(r, GST_LIDAR_ECN_ECT1, "10.0.0.2"), GST_FLOW_OK);
   }
-  EXPECT_EQ(Passed(), 7U);  // the first four packets of the new address were its probation
+  // The first four packets from the new address are dropped: they are its probation.
+  EXPECT_EQ(Passed(), 7U);
   EXPECT_EQ(Stats(element)["peer-moves"], 1U);
   r.seq = 11;
   r.marker = true;
@@ -225,7 +228,7 @@ TEST_F(ScreamRx, FollowsASenderThatComesBackFromAnotherAddress) {
     ASSERT_EQ(report.blocks.size(), 1U);
     last = report.blocks[0];
   } while (last.begin_seq + last.metrics.size() <= 11);
-  EXPECT_EQ(last.begin_seq, 5);  // the report has no packets of the old address
+  EXPECT_EQ(last.begin_seq, 5);  // the report omits the packets of the old address
 }
 
 TEST_F(ScreamRx, ShowsNothingOfTheOldPeerAfterAMove) {
@@ -260,7 +263,7 @@ TEST_F(ScreamRx, ShowsNothingOfTheOldPeerAfterAMove) {
   }
 }
 
-/// A sender that restarted under its SSRC, and now has two links.
+/// The sender restarts with the same SSRC, and from then on uses two links.
 TEST_F(ScreamRx, PassesWhatTheNewPeerSendsUnderNumbersOfTheOld) {
   Start();
   Rtp r;
@@ -312,7 +315,8 @@ TEST_F(ScreamRx, DropsARecordingThatIsOlderThanAskedFor) {
       ASSERT_EQ(Push(r), GST_FLOW_OK);
     }
     ++r.seq;
-    r.payload = WholeSlice();  // without a time, it is as old as the one before
+    // It has no capture time, so it counts as old as the slice before it.
+    r.payload = WholeSlice();
     ASSERT_EQ(Push(r), GST_FLOW_OK);
     EXPECT_EQ(Passed(), asked ? 2U : 5U);
     EXPECT_EQ(Stats(element)["packets-old"], asked ? 3U : 0U);
@@ -321,7 +325,8 @@ TEST_F(ScreamRx, DropsARecordingThatIsOlderThanAskedFor) {
   }
 }
 
-/// A slice without a capture time gets the age of the slice before it in the same run.
+/// A slice without a capture time counts as old as the slice before it. A new run must forget the
+/// slices of the run before.
 TEST_F(ScreamRx, JudgesTheAgeOfSlicesAnewInEachRun) {
   g_object_set(element, "max-age", guint64{2 * GST_SECOND}, nullptr);
   Start();
@@ -341,7 +346,7 @@ TEST_F(ScreamRx, JudgesTheAgeOfSlicesAnewInEachRun) {
   }
 }
 
-/// Payload type 96 is LiDAR at first, and then something else.
+/// Payload type 96 is LiDAR at first, then other media, then LiDAR again.
 TEST_F(ScreamRx, JudgesTheAgeOfNothingThatIsLidarNoMore) {
   g_object_set(element, "max-age", guint64{2 * GST_SECOND}, nullptr);
   Start();
@@ -386,7 +391,8 @@ TEST_F(ScreamRx, GoesOnWithThePeerWhereSomebodyElseSendsARecordingOfItsSsrc) {
   Rtp recorded = r;
   recorded.payload = WholeSlice(lidar::rtp::ToNtp(now - 3600 * GST_SECOND));
   ASSERT_EQ(Push(recorded, GST_LIDAR_ECN_ECT1, "10.0.0.9"), GST_FLOW_OK);
-  r.payload = WholeSlice();  // without a time, it is as old as the one before
+  // It has no capture time, so it counts as old as the slice before it.
+  r.payload = WholeSlice();
   ASSERT_EQ(Push(r, GST_LIDAR_ECN_ECT1, "10.0.0.1"), GST_FLOW_OK);
   EXPECT_EQ(Passed(), 2U);
   EXPECT_EQ(Stats(element)["packets-old"], 1U);
@@ -483,7 +489,7 @@ TEST_F(ScreamRx, ReadsItselfInEricssonsWayWhereAsked) {
   const BufferPtr buffer(gst_harness_pull(rtcp.get()));
   const auto bytes = ToBytes(buffer.get());
   ASSERT_GE(bytes.size(), 16U);
-  EXPECT_EQ(bytes[14] << 8 | bytes[15], 2);  // three blocks, minus one
+  EXPECT_EQ(bytes[14] << 8 | bytes[15], 2);  // num_reports is the number of metric blocks minus one
 }
 
 TEST_F(ScreamRx, StartsAfreshAfterEveryStateCycle) {
@@ -500,7 +506,7 @@ TEST_F(ScreamRx, StartsAfreshAfterEveryStateCycle) {
        {"packets-received", "ssrcs", "packets-foreign", "sender-reports", "goodbyes"})
     EXPECT_EQ(Stats(element)[counter], 0U) << counter;
   while (EventPtr event{gst_harness_try_pull_event(rtcp.get())}) continue;
-  // The address that was foreign now sends first.
+  // In this run, the first packet comes from the address that was foreign before.
   EXPECT_EQ(Push({}, GST_LIDAR_ECN_ECT1, "10.0.0.2"), GST_FLOW_OK);
   EXPECT_EQ(Stats(element)["packets-foreign"], 0U);
   Report();
@@ -524,7 +530,8 @@ TEST_F(ScreamRx, AsksForNoKeyUnitOfTheRunBefore) {
       &blocked, nullptr);
   ASSERT_EQ(Push({}), GST_FLOW_OK);
   ASSERT_TRUE(Eventually([&] { return blocked.load(); }));
-  Rtp r;  // from so many sources that the stop comes before all requests are sent
+  // There are so many SSRCs that the element stops before it has sent all requests.
+  Rtp r;
   for (r.ssrc = 1; r.ssrc <= 60; ++r.ssrc) ASSERT_EQ(Push(r), GST_FLOW_OK);
   GstStructure* wish = gst_structure_new_empty("GstForceKeyUnit");
   ASSERT_TRUE(gst_harness_push_upstream_event(

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// How screamtx handles RTCP: reports, forgeries, and packets for other elements.
+// Tests of how screamtx handles RTCP: reports, forged reports, and RTCP for other elements.
 #include <gst/video/video.h>
 #include <gtest/gtest.h>
 #include <time.h>
@@ -63,7 +63,8 @@ TEST_F(ScreamTx, RaisesTheTargetOnAFreePathAndLowersItUnderMarks) {
   EXPECT_GT(told.rtt, 0U);
 }
 
-/// Sends a packet each 10 ms. `arrives` returns what reports contain about a packet number.
+/// A fixture that sends one packet every 10 ms, and a report after each packet. `arrives` returns
+/// what the reports say about the packet with a given sequence number.
 class ScreamTxFates : public ScreamTx {
  protected:
   template <class Arrives>
@@ -132,8 +133,10 @@ TEST_F(ScreamTxFates, AreCountedEachByItsName) {
   Run(60, arrives);
   EXPECT_EQ(Stats(element)["packets-lost"], 3U);
   EXPECT_EQ(Stats(element)["packets-late"], 0U);
-  Run(1, [&](guint16 seq) { return seq == 4 ? arrived : arrives(seq); });  // a lost packet arrives
-  // A block of another sender's packets, malformed RTCP, and a datagram that is not RTP.
+  // The lost packet 4 arrives after all.
+  Run(1, [&](guint16 seq) { return seq == 4 ? arrived : arrives(seq); });
+  // A report with a block about the packets of another sender, malformed RTCP, and a datagram that
+  // is not RTP.
   CongestionFeedback report = ReportOf(arrives);
   report.blocks.push_back({0x9999, 0, {arrived}});
   Feed(report);
@@ -190,7 +193,8 @@ TEST_F(ScreamTx, ShowsThePadAndTheQueueOfEachStream) {
 
 TEST_F(ScreamTx, TellsTheEncoderTheRoundTripAndTheQueueThatItShows) {
   Start();
-  // The round trip of the empty path takes 40 ms. Then a queue adds 30 ms.
+  // In the first 30 round trips there is no queue, and they take 40 ms. In the next 30 round trips
+  // a queue adds 30 ms.
   for (const guint64 round_trip_ms : {40U, 70U})
     for (guint32 i = 0; i < 30; ++i) {
       PushFrame(next_seq_ * 900U, 1);
@@ -274,8 +278,8 @@ TEST_F(ScreamTxFates, OfMoreRangesThanAReceiptHoldsAreToldFromTheFirstOn) {
 
 TEST_F(ScreamTx, TakesNoReceiptsFromReportsThatNameNoReceiver) {
   Start(kLidarCaps);
-  // Transport-wide feedback names no receiver, and the packets that it reports may still be
-  // dropped.
+  // Transport-wide feedback does not name a receiver, and packets that it reports may still be
+  // dropped afterwards. Therefore it must not cause receipts.
   for (const guint32 ssrc : {0U, 9U}) {
     receiver = ssrc;
     const std::size_t before = acknowledged_;
@@ -376,8 +380,8 @@ TEST_F(ScreamTx, SleepsWhileAKeyUnitHasToWait) {
   ASSERT_EQ(gst_harness_push(rtcp.get(), FromBytes(request)), GST_FLOW_OK);
   ASSERT_TRUE(EventPtr(WaitForUpstream(rtp.get(), "GstForceKeyUnit")));
   ASSERT_EQ(gst_harness_push(rtcp.get(), FromBytes(request)), GST_FLOW_OK);
-  // The clock of the test stands still, so the second request waits; a thread checks the request
-  // every 200 ms.
+  // The test's clock does not advance, so the second request has to wait. A thread checks the
+  // request every 200 ms, and must sleep in between.
   const auto processor_time = [] {
     timespec spent{};
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &spent);
@@ -400,7 +404,8 @@ TEST_F(ScreamTx, PassesForeignRtcpAndKeepsItsOwn) {
   const auto ccfb = rtcp::BuildCcfb(ours);
   auto compound = receiver_report;
   compound.insert(compound.end(), ccfb.begin(), ccfb.end());
-  // An rtpbin downstream needs the buffer's time for round trips, and its address for the sender.
+  // If there is an rtpbin downstream, it needs the buffer's time to compute round trips, and the
+  // buffer's address to identify the sender.
   GstBuffer* datagram = FromBytes(compound);
   GST_BUFFER_PTS(datagram) = 7 * GST_SECOND;
   const std::unique_ptr<GSocketAddress, gst::GObjectUnref> peer(
@@ -414,7 +419,7 @@ TEST_F(ScreamTx, PassesForeignRtcpAndKeepsItsOwn) {
   ASSERT_TRUE(meta);
   EXPECT_EQ(meta->addr, peer.get());
 
-  ours.blocks[0].ssrc = 0x9999;  // of another sender downstream
+  ours.blocks[0].ssrc = 0x9999;  // SSRC of another sender downstream
   const auto theirs = rtcp::BuildCcfb(ours);
   ASSERT_EQ(gst_harness_push(rtcp.get(), FromBytes(theirs)), GST_FLOW_OK);
   const BufferPtr passed(gst_harness_pull(rtcp.get()));
@@ -534,31 +539,32 @@ TEST_F(ScreamTx, SaysOnceThatNobodyAnswersAndEachTimeThatSomebodyDoesAgain) {
   };
   run(38, false);
   EXPECT_FALSE(next());
-  run(10, false);  // past 2 s
+  run(10, false);  // together longer than 2 s
   gst::MessagePtr message = next();
   ASSERT_TRUE(message);
   EXPECT_EQ(GST_MESSAGE_TYPE(message.get()), GST_MESSAGE_WARNING);
   EXPECT_TRUE(tells(next(), FALSE));
   Collect();
-  acknowledged_ = sent.size();  // some packets between were dropped
+  // Acknowledge() leaves out the packets so far, because some between them were dropped.
+  acknowledged_ = sent.size();
   run(40, true);
   EXPECT_TRUE(tells(next(), TRUE));
   run(60, false);
-  EXPECT_TRUE(tells(next(), FALSE));  // without another warning
+  EXPECT_TRUE(tells(next(), FALSE));  // there is no second warning
   EXPECT_FALSE(next());
   gst_element_set_state(element, GST_STATE_READY);
   gst_element_set_state(element, GST_STATE_PLAYING);
   gst_harness_play(rtp.get());
   run(38, false);
   EXPECT_FALSE(next());
-  run(10, false);  // the first message of this run
+  run(10, false);  // the next message is the first of this run
   message = next();
   ASSERT_TRUE(message);
   EXPECT_EQ(GST_MESSAGE_TYPE(message.get()), GST_MESSAGE_WARNING);
   gst_element_set_state(element, GST_STATE_NULL);
 }
 
-/// A stream that ends after some time, and whether a warning says that no receiver answered.
+/// A fixture that streams for some time, and counts the warnings that no receiver answered.
 class ScreamTxEnds : public ScreamTx {
  protected:
   void TearDown() override {
@@ -566,7 +572,8 @@ class ScreamTxEnds : public ScreamTx {
     bus_.reset();
     ScreamTx::TearDown();
   }
-  /// Streams for `length`. Returns the number of warnings before EOS.
+  /// Streams for `length`, with feedback if `answered` is true. Returns the number of warnings
+  /// before EOS.
   int WarningsOf(GstClockTime length, bool answered) {
     Start();
     for (GstClockTime at = 0; at < length; at += 10 * GST_MSECOND) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A screamtx between harnesses, under a test clock.
+// A fixture with a screamtx between harnesses, under a test clock.
 #pragma once
 #include <gst/net/gstnetaddressmeta.h>
 #include <gtest/gtest.h>
@@ -32,14 +32,15 @@ class ScreamTx : public ::testing::Test {
     gst_harness_set_src_caps_str(rtp.get(), caps);
     gst_harness_set_src_caps_str(rtcp.get(), "application/x-rtcp");
   }
-  /// Starts without an element after rtcp_src, so that other RTCP is dropped.
+  /// Starts without an element after rtcp_src. Therefore screamtx drops RTCP that is not for
+  /// itself.
   void StartAsLast(const char* caps) {
     rtp.reset(gst_harness_new_with_element(element, "sink_0", "src"));
     rtcp.reset(gst_harness_new_with_element(element, "rtcp_sink", nullptr));
     gst_harness_set_src_caps_str(rtp.get(), caps);
     gst_harness_set_src_caps_str(rtcp.get(), "application/x-rtcp");
   }
-  /// Stops, and starts again with the caps of Start().
+  /// Stops the element, and starts it again with the caps of Start().
   void Restart() {
     gst_element_set_state(element, GST_STATE_NULL);
     gst_harness_play(rtp.get());
@@ -53,7 +54,7 @@ class ScreamTx : public ::testing::Test {
     gst_object_unref(element);
   }
   GstFlowReturn Push(const Rtp& r) { return gst_harness_push(rtp.get(), NewRtp(r)); }
-  /// Pushes a frame of `packets` packets, with the next sequence numbers.
+  /// Pushes a frame that consists of `packets` packets with the next sequence numbers.
   void PushFrame(guint32 timestamp, int packets) {
     for (int i = 0; i < packets; ++i) {
       Rtp r;
@@ -63,7 +64,7 @@ class ScreamTx : public ::testing::Test {
       ASSERT_EQ(Push(r), GST_FLOW_OK);
     }
   }
-  /// Takes the packets that have left so far.
+  /// Adds the packets that the element has sent since the last call to `sent` and `byes`.
   void Collect() {
     time.Settle();
     while (BufferPtr buffer{gst_harness_try_pull(rtp.get())}) {
@@ -78,7 +79,7 @@ class ScreamTx : public ::testing::Test {
                                                                            : -1);
     }
   }
-  /// Reports all packets that were sent and not yet reported.
+  /// Pushes a report about all packets that were sent but not reported yet.
   void Acknowledge(Ecn ecn = Ecn::kEct1) {
     Collect();
     if (acknowledged_ == sent.size()) return;
@@ -102,7 +103,7 @@ class ScreamTx : public ::testing::Test {
     if (from) gst_buffer_add_net_address_meta(buffer, from.get());
     ASSERT_EQ(gst_harness_push(rtcp.get(), buffer), GST_FLOW_OK);
   }
-  /// Returns the target-bitrate events that reached upstream so far.
+  /// Returns the target-bitrate events that have arrived upstream since the last call.
   static std::vector<GstLidarTargetBitrate> Targets(GstHarness* h) {
     std::vector<GstLidarTargetBitrate> targets;
     while (EventPtr event{gst_harness_try_pull_upstream_event(h)}) {
@@ -121,7 +122,8 @@ class ScreamTx : public ::testing::Test {
       gst_event_unref(event);
     }
   }
-  /// Returns the names of all upstream events, up to the third next repetition of the target.
+  /// Returns the names of all upstream events that arrive until the target has been repeated three
+  /// times.
   std::multiset<std::string> NamesUpstream(GstHarness* h) {
     std::multiset<std::string> names;
     const auto note = [&](GstEvent* event) {
@@ -137,9 +139,11 @@ class ScreamTx : public ::testing::Test {
     }
     return names;
   }
-  /// Returns the target's next repetition, without events that were caused earlier.
+  /// Discards the upstream events that were caused earlier. Returns the next repetition of the
+  /// target.
   GstLidarTargetBitrate NextTarget(GstHarness* h) {
-    g_usleep(20'000);  // upstream events come from a thread: lets late ones come first
+    // Waits for late events, because a thread sends the upstream events.
+    g_usleep(20'000);
     Targets(h);
     time.Advance(250 * GST_MSECOND);
     GstLidarTargetBitrate target{};
@@ -157,11 +161,11 @@ class ScreamTx : public ::testing::Test {
     time.Advance(10 * GST_MSECOND);
     return HasEos();
   }
-  /// Returns true once a packet has left.
+  /// Waits until a packet leaves the element. Returns false if that takes too long.
   bool Leaves() {
     return Eventually([this] { return BufferPtr(gst_harness_try_pull(rtp.get())) != nullptr; });
   }
-  /// Streams a packet and EOS in each of two rounds. Calls `begin_anew` after each EOS.
+  /// Pushes a packet and EOS, and calls `begin_anew`. Does this twice.
   void StreamTwice(const std::function<void()>& begin_anew) {
     Start();
     for (int round = 0; round < 2; ++round) {
@@ -178,8 +182,9 @@ class ScreamTx : public ::testing::Test {
     EXPECT_EQ(sent.size(), 2U);
   }
 
-  std::unique_ptr<GSocketAddress, gst::GObjectUnref> from;  // source of feedback; null by default
-  guint32 receiver = 9;                                     // SSRC that reports come from
+  // Source address of the feedback; null: none.
+  std::unique_ptr<GSocketAddress, gst::GObjectUnref> from;
+  guint32 receiver = 9;                                     // SSRC from which the reports come
   std::vector<int> ecns;
   std::vector<std::vector<std::uint8_t>> byes;
   guint16 next_seq_ = 0;

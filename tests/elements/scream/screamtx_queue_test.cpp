@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The queue of screamtx under a test clock: what waits, what is dropped, how it ends.
+// Tests of the queue of screamtx under a test clock: which packets wait, which are dropped, and
+// what happens at EOS.
 #include <gtest/gtest.h>
 
 #include <future>
@@ -37,7 +38,7 @@ TEST_F(ScreamTx, DropsLateFramesOfLiveInputWhole) {
   Collect();
   std::map<guint32, int> packets;
   for (const Rtp& r : sent) ++packets[r.timestamp];
-  EXPECT_EQ(packets[0], 30);  // the frame's first packet had left
+  EXPECT_EQ(packets[0], 30);  // the first packet of this frame had already been sent
   EXPECT_EQ(packets[99999], 2);
   EXPECT_EQ(packets.size(), 2U);
   const gst::PadPtr another(gst_element_request_pad_simple(element, "sink_%u"));
@@ -66,7 +67,7 @@ TEST_F(ScreamTx, AReleasedPadLeavesItsDropsInTheCounts) {
   const Stats before(element);
   EXPECT_EQ(before["frames-dropped"], 1U);
   EXPECT_EQ(before["packets-dropped"], 30U);
-  other.reset();  // releases the pad
+  other.reset();  // releases its pad
   const Stats after(element);
   EXPECT_EQ(after["frames-dropped"], 1U);
   EXPECT_EQ(after["packets-dropped"] + after["packets-sent"], 90U);
@@ -106,7 +107,7 @@ TEST_F(ScreamTx, EosDrainsTheQueue) {
   EXPECT_EQ(sent.size(), 20U);
   EXPECT_TRUE(HasEos());
   EXPECT_EQ(Push({}), GST_FLOW_EOS);
-  ASSERT_GE(byes.size(), 2U);  // one may be lost
+  ASSERT_GE(byes.size(), 2U);  // at least two, because one may be lost
   EXPECT_EQ(gst::ParseBye({byes[0].data(), byes[0].size()}), std::vector<guint32>{0x1234});
 }
 
@@ -213,7 +214,8 @@ TEST_F(ScreamTx, AnswersNoQueryThatWouldOvertakeThePackets) {
   EXPECT_FALSE(gst_pad_peer_query(rtp->srcpad, drain.get()));
 }
 
-/// A screamtx whose upstream answers that it is live, or not.
+/// A fixture whose upstream pad answers latency queries. The stream is live or not, as `live_`
+/// says.
 class ScreamTxOf : public ScreamTx {
  protected:
   void StartLive(bool live) {
@@ -235,8 +237,8 @@ class ScreamTxOf : public ScreamTx {
   static bool IsIn(const std::future<GstFlowReturn>& pushed, std::chrono::milliseconds patience) {
     return pushed.wait_for(patience) == std::future_status::ready;
   }
-  /// Returns the clock time at which a packet enters, and advances to it. Returns
-  /// GST_CLOCK_TIME_NONE if the packet enters at once.
+  /// Pushes a packet, and advances the clock to the time at which the packet enters the queue.
+  /// Returns this time, or GST_CLOCK_TIME_NONE if the packet enters at once.
   GstClockTime EntryOf(guint16 seq, GstClockTime pts) {
     auto pushed = PushAt(seq, pts);
     GstTestClock* clock = gst_harness_get_testclock(rtp.get());
@@ -254,7 +256,7 @@ class ScreamTxOf : public ScreamTx {
 
 TEST_F(ScreamTxOf, ALiveStreamThatFollowsOneThatIsNotEntersAtOnce) {
   StartLive(false);
-  ASSERT_EQ(Push({}), GST_FLOW_OK);  // without a time
+  ASSERT_EQ(Push({}), GST_FLOW_OK);  // has no timestamp
   live_ = true;
   ASSERT_TRUE(gst_harness_push_event(rtp.get(), gst_event_new_stream_start("live")));
   auto pushed = PushAt(1, 3600 * GST_SECOND);
@@ -282,7 +284,8 @@ TEST_F(ScreamTxOf, AFileKeepsItsTimeBehindAFlushThroughAPauseButNotThroughAPrero
   gst_element_set_base_time(element, 5 * GST_SECOND);
   gst_element_set_state(element, GST_STATE_PLAYING);
   EXPECT_EQ(EntryOf(3, 2 * GST_SECOND), 17 * GST_SECOND);
-  gst_element_set_base_time(element, 17 * GST_SECOND);  // as after a preroll of another element
+  // As if the preroll of another element took 12 s.
+  gst_element_set_base_time(element, 17 * GST_SECOND);
   EXPECT_EQ(EntryOf(4, 3 * GST_SECOND), 20 * GST_SECOND);
 }
 
@@ -324,7 +327,8 @@ TEST_F(ScreamTxOf, AFileWaitsBehindItsFirstPacketWhileItIsPaused) {
   EXPECT_EQ(pushed.get(), GST_FLOW_OK);
 }
 
-/// The sink of a pipeline that pauses needs a packet to preroll.
+/// The sink of a paused pipeline needs a packet to preroll. Therefore a waiting packet must enter
+/// when the element pauses.
 TEST_F(ScreamTxOf, APacketThatWaitsForItsTimeEntersAtAPause) {
   StartLive(false);
   auto pushed = PushAt(0, 3600 * GST_SECOND);
@@ -423,7 +427,8 @@ TEST_F(ScreamTx, AddsItsLongestDelayToTheLatency) {
   Start();
   gst_harness_set_upstream_latency(rtp.get(), 30 * GST_MSECOND);
   EXPECT_EQ(gst_harness_query_latency(rtp.get()), 100 * GST_MSECOND);
-  g_object_set(element, "max-queue-delay", 10 * GST_SECOND, nullptr);  // applies at the next start
+  // Takes effect at the next start.
+  g_object_set(element, "max-queue-delay", 10 * GST_SECOND, nullptr);
   EXPECT_EQ(gst_harness_query_latency(rtp.get()), 100 * GST_MSECOND);
 }
 
@@ -440,7 +445,7 @@ TEST_F(ScreamTx, HoldsNoMoreThanItsDelayThroughAnOutageAndRecoversWithinASecond)
           Acknowledge();
         } else {
           Collect();
-          acknowledged_ = sent.size();  // lost
+          acknowledged_ = sent.size();  // these packets are lost
         }
       }
     }
@@ -453,8 +458,9 @@ TEST_F(ScreamTx, HoldsNoMoreThanItsDelayThroughAnOutageAndRecoversWithinASecond)
   EXPECT_LT(down["sent-bitrate"], 400'000U);
   EXPECT_GT(down["feedback-timeouts"], 0U);
   EXPECT_GT(down["frames-dropped"], 1000U);
-  // The queue gets 4 packets each 20 ms. Frames that wait for 200 ms are dropped. But the rest of a
-  // frame that has begun to leave may stay for 1 s, and later frames wait behind it.
+  // The queue gets 4 packets every 20 ms, and frames are dropped after they have waited for 200 ms.
+  // But if the first packets of a frame have been sent, its other packets may wait for 1 s. Later
+  // frames wait behind them.
   EXPECT_LE(down["queued-bytes"], 51U * 4 * 1228);
   EXPECT_GT(down["packets-sent"], 0U);
   run(GST_SECOND, true);

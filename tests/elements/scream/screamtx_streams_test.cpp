@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Several streams of one screamtx: shares, companions, pads that come and go.
+// Tests of several streams in one screamtx: their shares, their companions, and pads that are added
+// and released.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +15,7 @@
 namespace lidar::test {
 namespace {
 
-/// Returns a second pad of screamtx, whose segment begins at `start`.
+/// Requests the pad sink_1 of screamtx. The segment of its stream begins at `start`.
 Harness AddVideoFrom(GstElement* element, GstClockTime start) {
   Harness video(gst_harness_new_with_element(element, "sink_1", nullptr));
   gst_harness_set_src_caps_str(video.get(), kVideoCaps);
@@ -25,7 +26,7 @@ Harness AddVideoFrom(GstElement* element, GstClockTime start) {
   return video;
 }
 
-/// Pushes frame `i` of another stream, in one packet.
+/// Pushes frame `i` of the stream with SSRC 0x5678. The frame has one packet.
 void PushSmallFrame(GstHarness* stream, int i) {
   Rtp r;
   r.ssrc = 0x5678;
@@ -64,7 +65,7 @@ struct Companion {
 };
 class ScreamTxWith : public ScreamTx, public ::testing::WithParamInterface<Companion> {
  protected:
-  /// Sends packets, each with one of the companion, for four seconds.
+  /// Sends 400 packets in four seconds, and a packet of the companion with each.
   void SendBoth() {
     for (guint16 i = 0; i < 400; ++i) {
       PushFrame(i * 900U, 1);
@@ -134,13 +135,14 @@ TEST_F(ScreamTx, APadThatComesAndGoesWhilePlayingTakesItsShareAndLeavesIt) {
     Rtp r;
     r.ssrc = 0x5678;
     r.marker = true;
-    for (guint16 i = 0; i < 30; ++i) {  // more than the window allows: some wait in the queue
+    // More packets than the window allows, so that some wait in the queue.
+    for (guint16 i = 0; i < 30; ++i) {
       r.seq = i;
       ASSERT_EQ(gst_harness_push(second.get(), NewRtp(r)), GST_FLOW_OK);
     }
     Collect();
     EXPECT_GT(Stats(element)["queued-bytes"], 0U);
-    second.reset();  // releases the pad
+    second.reset();  // releases its pad
     EXPECT_FALSE(gst::PadPtr(gst_element_get_static_pad(element, "sink_1")));
     EXPECT_EQ(Stats(element)["queued-bytes"], 0U);
     time.Advance(500 * GST_MSECOND);
@@ -154,7 +156,8 @@ TEST_F(ScreamTx, APadThatComesAndGoesWhilePlayingTakesItsShareAndLeavesIt) {
 }
 
 TEST_F(ScreamTx, PadsThatAreAskedForByAllAtOnceAreGivenOnce) {
-  // Requests pads without gst_element_request_pad(), which checks for a taken name first.
+  // Requests the pads without gst_element_request_pad(), because that function itself checks first
+  // whether a name is taken.
   GstElementClass* klass = GST_ELEMENT_GET_CLASS(element);
   GstPadTemplate* templ = gst_element_class_get_pad_template(klass, "sink_%u");
   std::atomic<int> given{0};
@@ -211,7 +214,7 @@ TEST_F(ScreamTx, TakesTheSourceAndThePayloadTypeOfItsMediaFromTheCaps) {
   const auto targets = Targets(rtp.get());
   ASSERT_GE(targets.size(), 1U);
   EXPECT_EQ(targets[0].ssrc, 77U) << "before its first packet";
-  PushFrame(0, 1);  // of another source: a repair packet
+  PushFrame(0, 1);  // the packet has another SSRC, as a repair packet would
   EXPECT_EQ(Stats(element).Of("streams", 0)["ssrc"], 77U);
 }
 
@@ -229,7 +232,7 @@ TEST_F(ScreamTx, APadWithStrictPriorityGoesBeforeWhatWaits) {
   gst_harness_set_src_caps_str(audio.get(), kVideoCaps);
   const gst::PadPtr pad(gst_element_get_static_pad(element, "sink_1"));
   g_object_set(pad.get(), "strict-priority", TRUE, "max-bitrate", 100'000U, nullptr);
-  PushFrame(0, 60);  // takes half a second at the first target
+  PushFrame(0, 60);  // 60 packets take half a second at the first target
   Collect();
   const std::size_t before = sent.size();
   ASSERT_LT(before, 60U);
@@ -267,7 +270,7 @@ TEST_F(ScreamTx, AStrictPadGetsItsMaximumBeforeOthersGetMoreThanTheyNeed) {
 }
 
 TEST_F(ScreamTx, BitratesOfAPadWinOverThoseOfTheElement) {
-  for (const guint min : {2'000'000U, 9'000'000U}) {  // the second is above the maximum
+  for (const guint min : {2'000'000U, 9'000'000U}) {  // the second minimum is above the maximum
     const gst::PadPtr pad(gst_element_request_pad_simple(element, "sink_0"));
     g_object_set(pad.get(), "min-bitrate", min, "start-bitrate", 3'000'000U, "max-bitrate",
                  5'000'000U, nullptr);
@@ -403,7 +406,8 @@ TEST_F(ScreamTx, GoesOnBehindAFlushOfOneOfSeveralStreamsWhereTheNextElementHadSt
 }
 
 TEST_F(ScreamTx, APacketThatWaitsKeepsTheTimeOfItsSegment) {
-  constexpr guint16 kPackets = 30;  // more than the window allows: some wait in the queue
+  // More than the window allows, so some packets wait in the queue.
+  constexpr guint16 kPackets = 30;
   g_object_set(element, "max-queue-delay", 10 * GST_SECOND, nullptr);
   Start();
   Harness second(gst_harness_new_with_element(element, "sink_1", nullptr));

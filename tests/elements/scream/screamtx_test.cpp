@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// screamtx under a test clock: its events upstream, its packets, its statistics.
+// Tests of screamtx under a test clock: the events that it sends upstream, its packets, and its
+// statistics.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -19,7 +20,7 @@ TEST_F(ScreamTx, TellsTheEncoderItsStartBitrateWithTheCaps) {
   const auto targets = Targets(rtp.get());
   ASSERT_GE(targets.size(), 1U);
   EXPECT_STREQ(targets[0].reason, "start");
-  // The target excludes the headers of 1200-byte packets.
+  // The target counts only payload: 1188 of the 1228 bytes of a packet.
   EXPECT_NEAR(targets[0].bitrate, 2'000'000.0 * 1188 / 1228, 1000);
 }
 
@@ -143,13 +144,14 @@ TEST_F(ScreamTx, StartsAfreshAfterEveryStateCycle) {
   Start();
   PushFrame(0, 30);
   PushFrame(900, 30);
-  time.Advance(600 * GST_MSECOND);  // both are late
+  time.Advance(600 * GST_MSECOND);  // now both frames are late
   PushFrame(1800, 30);
   ASSERT_EQ(gst_harness_push(rtp.get(), FromBytes({1, 2, 3})), GST_FLOW_OK);
   const std::vector<std::uint8_t> malformed{0x8b, 205, 0, 1, 0, 0, 0, 1};
   ASSERT_EQ(gst_harness_push(rtcp.get(), FromBytes(malformed)), GST_FLOW_OK);
   rtcp::CongestionFeedback report;
-  report.blocks.push_back({0x1234, 30000, {{true, Ecn::kCe, Duration{0}}}});  // was never sent
+  // This packet was never sent.
+  report.blocks.push_back({0x1234, 30000, {{true, Ecn::kCe, Duration{0}}}});
   report.blocks.push_back({0x9999, 0, {{true, Ecn::kCe, Duration{0}}}});
   for (const bool ours : {true, false}) {
     Feed(report);
@@ -188,7 +190,8 @@ TEST_F(ScreamTx, NotifiesTheEstimatedBitrateOnTheWire) {
   EXPECT_EQ(bps, 3'000'000U) << "until there is another";
 }
 
-/// Sends and acknowledges packets, one each 100 ms unless set otherwise.
+/// A fixture that sends and acknowledges packets. The packets are 100 ms apart unless set
+/// otherwise.
 class ScreamTxReports : public ScreamTx {
  protected:
   void Run(int packets, GstClockTime apart = 100 * GST_MSECOND) {
@@ -248,7 +251,8 @@ TEST_F(ScreamTxReports, AreNotSentUnlessAskedForNorMoreOftenThanTenASecond) {
   EXPECT_LE(Reports().size(), 20U);
 }
 
-/// An encoder that refuses key requests, and takes targets only if the parameter is true.
+/// A fixture whose encoder refuses key requests. The encoder accepts targets only if the parameter
+/// is true.
 class ScreamTxUnheeded : public ScreamTx, public ::testing::WithParamInterface<bool> {
  protected:
   void StartRefusing() {
@@ -277,7 +281,8 @@ TEST_P(ScreamTxUnheeded, WarnsOnceOfDroppedFramesWhereNoEncoderTakesTheTarget) {
   StartRefusing();
   EXPECT_TRUE(DropsUntil([this] { return Stats(element)["frames-dropped"] >= 20; }));
   requests_ = 0;
-  // The warning is posted before the next request.
+  // The warning is posted before the next request is sent, so after further requests it must be on
+  // the bus.
   EXPECT_TRUE(DropsUntil([] { return requests_ >= 4; }));
   int warnings = 0;
   for (const std::string& text : bus.Texts(GST_MESSAGE_WARNING))
@@ -320,7 +325,7 @@ TEST_F(ScreamTx, PostsItsStatisticsAtTheInterval) {
   g_usleep(20'000);
   int more = 0;
   while (bus.Pop(GST_MESSAGE_ELEMENT)) ++more;
-  EXPECT_LE(more, 1);  // one more may have come at the start
+  EXPECT_LE(more, 1);  // the message of the start may be one more
   gst_element_set_state(element, GST_STATE_NULL);
 }
 
@@ -329,7 +334,7 @@ TEST_F(ScreamTx, PostsItsStatisticsAtTheIntervalWhileNothingIsSent) {
   const ElementBus bus(element);
   Start();
   for (int i = 0; i < 5; ++i) {
-    ASSERT_TRUE(bus.Wait(GST_MESSAGE_ELEMENT)) << i;  // the first is that of the start
+    ASSERT_TRUE(bus.Wait(GST_MESSAGE_ELEMENT)) << i;  // the first message is posted at the start
     time.Advance(100 * GST_MSECOND);
   }
   gst_element_set_state(element, GST_STATE_NULL);

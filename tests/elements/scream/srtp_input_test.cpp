@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What a receiver with a key accepts: other keys, replays, recordings, wraps and floods, by a clock
-// that the test sets.
+// Tests of what a receiver with a key accepts: other keys, replays, recordings, wrapped sequence
+// numbers and floods. The test sets the clock.
 #include <dlfcn.h>
 #include <gst/check/gstharness.h>
 #include <gtest/gtest.h>
@@ -16,8 +16,8 @@
 
 using lidar::test::frozen_at;
 
-/// Replaces GLib's function in this program. It is hidden from libraries: GStreamer's system clock
-/// would sleep until a time that the test has set.
+/// Replaces GLib's function in this program. The function is hidden from libraries, because
+/// GStreamer's system clock would otherwise sleep until a time that the test has set.
 extern "C" __attribute__((visibility("hidden"))) gint64 g_get_monotonic_time() {
   ++lidar::test::looks;
   if (lidar::test::on_look) lidar::test::on_look();
@@ -72,7 +72,7 @@ class SrtpIn : public ::testing::Test {
     gst_element_set_state(bin_.get(), GST_STATE_NULL);
   }
 
-  /// Returns true if the datagram came out.
+  /// Pushes the datagram. Returns true if it passes.
   bool Passes(const BufferPtr& datagram) {
     const std::size_t before = passed_.size();
     gst_pad_push(socket_, gst_buffer_ref(datagram.get()));
@@ -168,7 +168,9 @@ TEST_F(SrtpIn, JoinsAStreamThatHasWrappedOftenAfterAFewPackets) {
   for (int turns = 0; turns < 200; ++turns) sender.Wrap();
   int tried = 0;
   for (guint16 seq = 100; !Passes(sender.Protect(seq)); ++seq) {
-    ASSERT_LE(++tried, 11);  // three rounds, of 4, 16 and 64 values, and one of 256
+    // Each packet tries 32 values: 3 packets for the rounds of 4, 16 and 64 values, and 8 packets
+    // for the round of 256 values.
+    ASSERT_LE(++tried, 11);
     Wait(0.2);
   }
 }
@@ -185,7 +187,7 @@ TEST_F(SrtpIn, JoinsAStreamThatHasWrappedWhoseReportsComeFirst) {
     Wait(0.2);
   }
   EXPECT_GE(refused, 2) << "so reports came in between";
-  // Once the media is found, reports still pass, but replays of reports do not.
+  // After the media was found, reports still pass, but replayed reports do not.
   const BufferPtr report = sender.ProtectReport();
   EXPECT_TRUE(Passes(report));
   EXPECT_FALSE(Passes(report));
@@ -210,7 +212,7 @@ TEST_F(SrtpIn, FollowsAWrap) {
 TEST_F(SrtpIn, RefusesARecordingOfAStreamThatFellSilent) {
   Protector sender(Key(5));
   std::vector<BufferPtr> recording;
-  for (const guint16 seq : Sequences{20'000, 40'000, 60'000, 5, 6}) {  // rolls over
+  for (const guint16 seq : Sequences{20'000, 40'000, 60'000, 5, 6}) {  // the numbers wrap
     recording.push_back(sender.Protect(seq));
     EXPECT_TRUE(Passes(recording.back()));
   }
@@ -218,7 +220,7 @@ TEST_F(SrtpIn, RefusesARecordingOfAStreamThatFellSilent) {
   Forge(30);
   for (int round = 0; round < 20; ++round)
     for (const BufferPtr& packet : recording) EXPECT_FALSE(Passes(packet));
-  // The replays have changed nothing: the live stream still passes.
+  // The live stream still passes, so the replays have not changed its state.
   EXPECT_TRUE(Passes(sender.Protect(7)));
 }
 
@@ -229,7 +231,7 @@ TEST_F(SrtpIn, FindsAStreamThatWrappedInSilence) {
   Wait(3);
   int refused = 0;
   for (guint16 seq = 10; !Passes(sender.Protect(seq)); ++seq) ASSERT_LT(++refused, 40);
-  EXPECT_GE(refused, 19);  // fewer refusals may be damaged packets
+  EXPECT_GE(refused, 19);  // fewer refused packets in a row may just be damaged packets
   EXPECT_TRUE(Passes(sender.Protect(1'000)));
 }
 
@@ -262,7 +264,8 @@ TEST_F(SrtpIn, ForgersDoNotMakeAStreamLost) {
   EXPECT_TRUE(Passes(sender.Protect(1)));
   Forge(3'000);
   EXPECT_TRUE(Passes(sender.Protect(2)));
-  // An unknown SSRC still passes: the forgeries did not use up the trials.
+  // A packet with an unknown SSRC still passes, so the forged packets did not use up the allowed
+  // trials.
   EXPECT_TRUE(Passes(sender.Protect(1, 99)));
 }
 
@@ -270,8 +273,8 @@ TEST_F(SrtpIn, TriesFiveHundredStrangersASecond) {
   Protector sender(Key(5));
   EXPECT_TRUE(Passes(sender.Protect(1)));
   for (guint32 ssrc = 1'000; ssrc < 1'600; ++ssrc) Forge(1, ssrc);
-  EXPECT_TRUE(Passes(sender.Protect(2)));       // a known SSRC
-  EXPECT_FALSE(Passes(sender.Protect(1, 99)));  // an unknown SSRC has to wait
+  EXPECT_TRUE(Passes(sender.Protect(2)));       // the SSRC is known
+  EXPECT_FALSE(Passes(sender.Protect(1, 99)));  // a new SSRC has to wait
   Wait(0.1);
   EXPECT_TRUE(Passes(sender.Protect(2, 99)));
 }
@@ -308,17 +311,20 @@ TEST_F(SrtpIn, RefusesReportsThatBeginAnewUnderTheSameKeyAndSsrc) {
 TEST_F(SrtpIn, KnowsItsStreamsAmongAnyNumberOfOthers) {
   Protector sender(Key(5));
   const BufferPtr recorded = sender.Protect(5);
-  for (int turns = 0; turns < 20; ++turns) sender.Wrap();  // beyond the 4 and 16 values tried first
+  // More than the 4 and 16 values that are tried first.
+  for (int turns = 0; turns < 20; ++turns) sender.Wrap();
   for (guint16 seq = 100; !Passes(sender.Protect(seq)); ++seq) ASSERT_LT(seq, 300);
   for (guint32 ssrc = 0; ssrc < 2'200; ++ssrc) {
     if (ssrc % 100 == 0) Wait(1);
     Forge(2, 100'000 + ssrc);
   }
   EXPECT_FALSE(Passes(recorded));
-  EXPECT_TRUE(Passes(sender.Protect(400)));  // with the rollover count of the known stream
+  // Decoded with the rollover counter of the known stream.
+  EXPECT_TRUE(Passes(sender.Protect(400)));
 }
 
-/// A packet causes trials of 32 values, so three packets cover the rounds of 4, 16 and 64 values.
+/// Each packet causes trials of 32 values. Therefore three packets cover the rounds of 4, 16 and 64
+/// values.
 TEST_F(SrtpIn, GoesOnWithItsSearchWhereGarbageComesFromMoreSsrcsThanItRemembers) {
   constexpr guint32 kStreams = 16;
   Protector sender(Key(5));
@@ -354,7 +360,7 @@ TEST_F(SrtpIn, TakesANewKeyAndForgetsTheOldOne) {
   EXPECT_EQ(input_->waiting_keys(), 0U);
   EXPECT_EQ(input_->counts().key_changes, 1U);
   Wait(9);
-  EXPECT_TRUE(Passes(before.Protect(4)));  // overtaken
+  EXPECT_TRUE(Passes(before.Protect(4)));  // packets with the new key overtook this one
   EXPECT_EQ(new_keys_.size(), 1U);
   Wait(2);
   EXPECT_FALSE(Passes(before.Protect(5)));
@@ -390,20 +396,21 @@ TEST_F(SrtpIn, RefusesARecordingOfTheKeyBefore) {
 }
 
 TEST_F(SrtpIn, IsNotStoppedWhileItMayDecode) {
-  // srtpdec would warn of a packet that it decodes while it stops, so only the socket stops.
+  // When the bin stops, it stops only its socket. If srtpdec stopped as well, it would warn of a
+  // packet that it decodes meanwhile.
   Protector sender(Key(5));
   const BufferPtr first = sender.Protect(1);
   EXPECT_TRUE(Passes(first));
   gst_element_set_state(bin_.get(), GST_STATE_READY);
   EXPECT_TRUE(Passes(sender.Protect(2)));
-  // After a stream-start event the stream is unknown, so the first packet passes again.
+  // After a stream-start event no stream is known, so the first packet passes again.
   gst_element_set_state(bin_.get(), GST_STATE_PLAYING);
   EXPECT_FALSE(Passes(first));
   gst_pad_push_event(socket_, gst_event_new_stream_start("again"));
   EXPECT_TRUE(Passes(first));
 }
 
-/// Returns the datagram as it comes from another host.
+/// Returns a copy of the datagram whose source address is `host`.
 BufferPtr From(const char* host, const BufferPtr& datagram) {
   BufferPtr copy(gst_buffer_copy_deep(datagram.get()));
   test::SetSource(copy.get(), host, 9);
@@ -413,7 +420,8 @@ BufferPtr From(const char* host, const BufferPtr& datagram) {
 TEST_F(SrtpIn, PassesACopyOnceFromEachAddress) {
   Protector sender(Key(5));
   EXPECT_TRUE(Passes(From("10.0.0.1", sender.Protect(1))));
-  EXPECT_TRUE(Passes(From("10.0.0.2", sender.Protect(2))));  // several addresses send from here on
+  // From now on, packets come from several addresses.
+  EXPECT_TRUE(Passes(From("10.0.0.2", sender.Protect(2))));
   const BufferPtr third = sender.Protect(3);
   EXPECT_TRUE(Passes(From("10.0.0.1", third)));
   EXPECT_TRUE(Passes(From("10.0.0.2", third)));
@@ -485,7 +493,7 @@ TEST_F(SrtpIn, RemembersSoManyBytesOfCopiesOnly) {
     EXPECT_TRUE(Passes(From("10.0.0.1", newer.back())));
   }
   EXPECT_FALSE(Passes(From("10.0.0.2", old)));
-  // Headers take the place of some datagrams.
+  // The limit also counts headers, so the copies of the first few datagrams are already forgotten.
   for (auto datagram = newer.begin() + 5; datagram != newer.end(); ++datagram)
     EXPECT_TRUE(Passes(From("10.0.0.2", *datagram)));
 }

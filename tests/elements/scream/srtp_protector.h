@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Packets and reports of a sender with a key, and forged ones.
+// Packets and reports of a sender that has a key, and forged packets.
 #pragma once
 #include <gst/check/gstharness.h>
 
@@ -19,7 +19,7 @@ using Sequences = std::vector<guint16>;
 
 inline SrtpKey Key(std::uint8_t digit) { return SrtpKey(kPolicy.key_size, digit); }
 
-/// Protects packets as a sender does, with a rollover counter of its own for each SSRC.
+/// Encrypts packets as a sender does. Each SSRC has its own rollover counter.
 class Protector {
  public:
   explicit Protector(const SrtpKey& key) {
@@ -33,14 +33,14 @@ class Protector {
     r.size = size;
     return BufferPtr(gst_harness_push_and_pull(harness_.get(), test::NewRtp(r)));
   }
-  /// Returns a sender's report of the stream, protected.
+  /// Returns an encrypted sender report of the stream `ssrc`.
   BufferPtr ProtectReport(guint32 ssrc = kSsrc) {
     rtcp::SenderReport report;
     report.ssrc = ssrc;
     GstBuffer* rtcp = test::FromBytes(rtcp::BuildSenderReport(report));
     return BufferPtr(gst_harness_push_and_pull(reports_.get(), rtcp));
   }
-  /// Protects packets until the sequence number has wrapped once more.
+  /// Encrypts packets until the sequence number has wrapped one more time.
   void Wrap(guint32 ssrc = kSsrc) {
     for (const guint16 seq : Sequences{20'000, 40'000, 60'000, 5}) Protect(seq, ssrc);
   }
