@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The table "Odd input" of docs/elements/dracoenc.md, with every coder.
+// Tests the table "Odd input" of docs/elements/dracoenc.md with every coder.
 #include <glib/gstdio.h>
 #include <gtest/gtest.h>
 
@@ -13,13 +13,15 @@ namespace lidar::gst {
 namespace {
 
 constexpr guint kColumns = 64;
-constexpr std::size_t kStep = 20;  // bytes a point: x, y, z, intensity, range
+constexpr std::size_t kStep = 20;  // bytes per point: x, y, z, intensity, range
 
 struct CloudCase {
   const char* name;
-  std::function<void(codec::RangeImage*)> ranges;  // changes ranges before they become points
+  // Changes the ranges before points are made of them.
+  std::function<void(codec::RangeImage*)> ranges;
   std::function<void(std::vector<std::uint8_t>*)> spoil;  // changes the points
-  bool some_in_xyz = true;                                // false: xyz geometry has no output
+  // False: with geometry=xyz no point is left.
+  bool some_in_xyz = true;
 };
 void PrintTo(const CloudCase& c, std::ostream* out) { *out << c.name; }
 
@@ -55,7 +57,7 @@ const CloudCase kClouds[] = {
     {"Duplicates",
      [](auto* image) { std::fill(image->ranges.begin(), image->ranges.end(), 5'000U); },
      [](auto* raw) {
-       // All points are the same in xyz.
+       // All points have the same x, y and z.
        for (std::size_t i = 1; i < raw->size() / kStep; ++i)
          std::memcpy(raw->data() + i * kStep, raw->data(), 12);
      }},
@@ -79,12 +81,12 @@ TEST_P(BadClouds, GiveFinitePointsWithinTheErrorAndNeverStopTheStream) {
     const StructurePtr check = codec.PopCheck();
     ASSERT_TRUE(check);
     const bool moved =
-        std::string(bad.name) == "Duplicates" && !xyz;  // points contradict their ranges
+        std::string(bad.name) == "Duplicates" && !xyz;  // the points contradict their ranges
     EXPECT_EQ(Holds(check.get()), !moved);
     for (const float v : PointsOf(output.get(), kStep - (xyz ? 4 : 0)))
       ASSERT_TRUE(std::isfinite(v));
   }
-  // The next slice is coded as usual.
+  // The next slice is coded normally.
   EXPECT_TRUE(codec.Push(OrganisedBuffer(model, kColumns, {9, 1, 8, 64})));
   EXPECT_TRUE(Holds(codec.PopCheck().get()));
   EXPECT_EQ(codec.Errors(), 0U);
@@ -99,7 +101,7 @@ INSTANTIATE_TEST_SUITE_P(All, BadClouds,
 
 TEST_P(AnyCoder, PassesOverABufferWithoutAnyPoint) {
   const SensorModel model = test::RoomSensor();
-  CloudInfo info = OrganisedInfo(model, 0);  // of any width
+  CloudInfo info = OrganisedInfo(model, 0);  // clouds may have any width
   CheckedCodec codec(GetParam());
   codec.SetCaps(info);
   GstBuffer* empty = gst_buffer_new();
@@ -136,12 +138,12 @@ TEST_P(AnyCoder, KeepsTheErrorWhateverTheStepAndTheBitrate) {
         ++checked;
       }
     }
-    EXPECT_GE(checked, 8U) << settings;  // the first scan is always sent
+    EXPECT_GE(checked, 8U) << settings;  // at least 8: the first scan is always sent
     EXPECT_EQ(codec.Warnings() + codec.Errors(), 0U) << settings;
   }
 }
 
-/// The error on the bus when an encoder gets caps with `text` as its model file.
+/// Returns the error message of an encoder whose caps have `text` as their model file.
 std::string ErrorWithModelFile(const std::string& text, const CoderCase& coder,
                                const std::string& properties = "") {
   gchar* name = nullptr;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// An encoder, then its decoder, and their messages on the bus.
+// An encoder and its decoder, and the messages that they post on the bus.
 #pragma once
 #include <deque>
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace lidar::gst {
 
-/// A codec with a bus.
+/// A codec, and the messages that it posts on its bus.
 class CheckedCodec {
  public:
   explicit CheckedCodec(const CoderCase& coder, const std::string& properties = "")
@@ -17,12 +17,13 @@ class CheckedCodec {
 
   void SetCaps(const CloudInfo& info) { gst::SetCaps(harness_.get(), info); }
   GstHarness* harness() const { return harness_.get(); }
-  /// Takes `buffer`, returns the decoded cloud.
+  /// Pushes `buffer` and returns the decoded cloud.
   BufferPtr Push(GstBuffer* buffer) {
     EXPECT_EQ(gst_harness_push(harness_.get(), buffer), GST_FLOW_OK);
     return BufferPtr(gst_harness_try_pull(harness_.get()));
   }
-  /// Returns the oldest check that was posted and not popped; null if there is none.
+  /// Removes the oldest error check from the queue and returns it, or returns null if the queue is
+  /// empty.
   StructurePtr PopCheck() {
     Drain();
     if (checks_.empty()) return nullptr;
@@ -30,7 +31,7 @@ class CheckedCodec {
     checks_.pop_front();
     return check;
   }
-  /// Returns the number of warnings so far.
+  /// Returns the number of warnings that were posted so far.
   unsigned Warnings() {
     Drain();
     return warnings_;
@@ -62,7 +63,7 @@ class CheckedCodec {
   unsigned errors_ = 0;
 };
 
-/// Returns true if the error check `s` found no error above the bound.
+/// Returns true if no error in the error check `s` exceeds the bound.
 inline bool Holds(const GstStructure* s) {
   gboolean holds = FALSE;
   EXPECT_TRUE(gst_structure_get_boolean(s, "holds", &holds));

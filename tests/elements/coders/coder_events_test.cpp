@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What coders do with events, before the first slice and behind a flush.
+// Tests of how coders handle events before the first slice and after a flush.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 namespace lidar::gst {
 namespace {
 
-/// A decoder, and slices and caps for it.
+/// A decoder without an encoder, and slices and caps that the test pushes to it.
 class LoneDecoder : public ::testing::TestWithParam<CoderCase> {
  protected:
   static constexpr guint kSlices = 4;
@@ -24,7 +24,7 @@ class LoneDecoder : public ::testing::TestWithParam<CoderCase> {
           encoder.get(), OrganisedBuffer(model, 64, {0, i, kSlices, 64 * i})));
     caps_.reset(gst_pad_get_current_caps(encoder->sinkpad));
     h_.reset(gst_harness_new(GetParam().decoder));
-    // GStreamer marks the first buffer of a pad.
+    // The flag is only set because this was the first buffer of the encoder's pad.
     gst_buffer_unset_flags(slices_[0].get(), GST_BUFFER_FLAG_DISCONT);
   }
   void SetSrcCaps() { gst_harness_set_src_caps(h_.get(), gst_caps_ref(caps_.get())); }
@@ -99,7 +99,7 @@ TEST_P(LoneDecoder, TakesASliceOfTheFutureForNew) {
   EXPECT_EQ(test::StatOf(h_->element, "age"), 0U);
 }
 
-/// Returns the caps with fields that no coder takes.
+/// Returns a copy of `caps` with fields that no coder accepts.
 CapsPtr WithBadFields(const GstCaps* caps) {
   CapsPtr bad(gst_caps_copy(caps));
   gst_caps_set_simple(bad.get(), "fields", G_TYPE_STRING, "x:F64:0,y:F64:8,z:F64:16", "point-step",
@@ -107,7 +107,7 @@ CapsPtr WithBadFields(const GstCaps* caps) {
   return bad;
 }
 
-/// Expects one error each time that bad caps come behind good ones.
+/// Expects one error each time that bad caps follow good caps.
 void ExpectAnErrorEachTime(GstHarness* h, GstCaps* good) {
   const test::ElementBus bus(h->element);
   const CapsPtr bad = WithBadFields(good);

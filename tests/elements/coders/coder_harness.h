@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Coders by name, and buffers and caps for their tests.
+// The coders with their names, and functions that make buffers and caps for their tests.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -26,16 +26,17 @@ using test::Harness;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// An encoder, which may have properties, and its decoder.
+/// An encoder, with properties if needed, and its decoder.
 struct CoderCase {
   const char* name;
   const char* encoder;
   const char* decoder;
-  bool xyz = false;  // codes coordinates
+  bool xyz = false;  // true: codes coordinates, not ranges
 };
 inline void PrintTo(const CoderCase& c, std::ostream* out) { *out << c.name; }
 
-// The efforts are fixed: with effort=auto the sizes would depend on the machine's load.
+// The efforts are fixed. With effort=auto, the sizes of slices would depend on the load of the
+// machine.
 constexpr CoderCase kLidar{"lidar", "lidarenc effort=1", "lidardec"};
 constexpr CoderCase kLidarXyz{"lidar_xyz", "lidarenc effort=0 geometry=xyz", "lidardec", true};
 constexpr CoderCase kDraco{"draco", "dracoenc", "dracodec"};
@@ -43,7 +44,7 @@ constexpr CoderCase kDracoXyz{"draco_xyz", "dracoenc geometry=xyz", "dracodec", 
 
 constexpr CoderCase kExample{"example", "exampleenc", "exampledec", true};
 
-/// Returns the coders that code organised scans by their ranges.
+/// Returns the coders that code organised scans by the ranges of their points.
 inline std::vector<CoderCase> RangeCoders() {
 #ifdef HAVE_DRACO
   return {kLidar, kDraco};
@@ -51,7 +52,7 @@ inline std::vector<CoderCase> RangeCoders() {
   return {kLidar};
 #endif
 }
-/// Returns the coders that we install.
+/// Returns the coders that this project installs.
 inline std::vector<CoderCase> OurCoders() {
   std::vector<CoderCase> coders = RangeCoders();
   coders.push_back(kLidarXyz);
@@ -96,7 +97,8 @@ inline CloudInfo OrganisedInfo(const SensorModel& model, guint columns) {
   return info;
 }
 
-/// Returns columns of the room, which is the same in each scan: made once for all scans.
+/// Returns the points of `columns` columns of a room. The room is the same in each scan, so the
+/// points are computed once and cached.
 inline const std::vector<std::uint8_t>& RoomPoints(const SensorModel& model, guint first_column,
                                                    guint columns) {
   using Part = std::tuple<std::vector<std::uint8_t>, guint, guint>;
@@ -132,9 +134,9 @@ inline void SetCaps(GstHarness* h, const CloudInfo& info) {
   gst_harness_set_src_caps(h, gst_caps_ref(caps.get()));
 }
 
-/// Tests that hold with every coder of ranges.
+/// Tests that must pass with every coder that codes ranges.
 class EitherCoder : public ::testing::TestWithParam<CoderCase> {};
-/// Tests that hold with every coder.
+/// Tests that must pass with every coder.
 class AnyCoder : public ::testing::TestWithParam<CoderCase> {};
 
 inline double LargestDistance(const std::vector<float>& a, const std::vector<float>& b) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A coder that was stopped behaves as a new one.
+// Tests that a coder that was stopped behaves like a new coder when it starts again.
 #include <gtest/gtest.h>
 
 #include <regex>
@@ -19,7 +19,7 @@ constexpr guint kRunColumns = 512 / kRunSlices;
 
 CapsPtr RoomCaps() { return CapsPtr(OrganisedInfo(test::RoomSensor(), kRunColumns).ToCaps()); }
 
-/// Pushes the slices of two scans and a half.
+/// Pushes the slices of two and a half scans.
 void PushScans(GstHarness* h, guint first_scan) {
   for (guint i = 0; i < 5 * kRunSlices / 2; ++i) {
     const guint index = i % kRunSlices;
@@ -35,7 +35,8 @@ void Acknowledge(GstHarness* h, guint receiver, guint scan) {
   gst_pad_push_event(h->sinkpad, gst_lidar_event_new_slices_received(&received));
 }
 
-/// Leaves much state in an encoder: references, a target bitrate, warnings, counts, half a scan.
+/// Creates much state in an encoder: references, a target bitrate, warnings, counts, and an
+/// incomplete scan.
 void EncodeMuch(GstHarness* h) {
   PushScans(h, 0);
   Acknowledge(h, 1, 1);
@@ -46,24 +47,24 @@ void EncodeMuch(GstHarness* h) {
   PushScans(h, 6);
 }
 
-/// Leaves much state in a decoder: references for later slices, counts, and a damaged slice.
+/// Creates much state in a decoder: references for later slices, counts, and a damaged slice.
 void DecodeMuch(GstHarness* h, const std::vector<BufferPtr>& slices) {
   for (std::size_t i = 0; i < slices.size(); ++i) {
-    if (i % 7 == 5) continue;  // the slice is lost, with the slices that refer to it
+    if (i % 7 == 5) continue;  // this slice is lost; slices that refer to it are dropped
     BufferPtr slice(gst_buffer_copy_deep(slices[i].get()));
     if (i == 3) gst_buffer_resize(slice.get(), 0, 20);
     gst_pad_push(h->srcpad, slice.release());
   }
 }
 
-/// Removes durations and ages, which depend on the clock.
+/// Removes the values of durations and ages, because they depend on the clock.
 Lines WithoutClock(Lines lines) {
   static const std::regex kClock("(encode-time|decode-time|age)=\\([a-z0-9]+\\)[0-9]+");
   for (std::string& line : lines) line = std::regex_replace(line, kClock, "$1");
   return lines;
 }
 
-/// Runs an element twice, and compares the runs.
+/// Runs an element twice, and expects that both runs are equal.
 template <class Run>
 void ExpectTheSameAgain(GstHarness* h, const GstCaps* caps, GstState between, const Run& run) {
   RunTrace trace(h);

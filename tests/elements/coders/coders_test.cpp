@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What every coder does, whatever it codes.
+// Tests of the properties that all coders have in common.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -162,7 +162,7 @@ TEST_P(EitherCoder, GivesTheSameCloudWithMoreThreads) {
   EXPECT_EQ(clouds[0], clouds[1]);
 }
 
-/// Each thread codes a block of its own, with a header.
+/// Each thread codes a block of its own. Each block has a header, so more threads need more bytes.
 TEST_P(EitherCoder, DividesALargeCloudAmongItsThreads) {
   const SensorModel model = test::RoomSensor(128);
   gsize before = 0;
@@ -271,7 +271,7 @@ TEST_P(RefusedCaps, GiveOneErrorThatSaysWhatIsMissing) {
   gst_message_parse_error(message.get(), &error, nullptr);
   EXPECT_TRUE(g_error_matches(error, GST_STREAM_ERROR, GST_STREAM_ERROR_FORMAT));
   g_error_free(error);
-  // GStreamer offers the caps again with each buffer.
+  // GStreamer may send the same caps again. The element must not post its error a second time.
   gst_harness_push_event(h.get(), gst_event_new_caps(caps.get()));
   EXPECT_FALSE(bus.Pop(GST_MESSAGE_ERROR));
 }
@@ -365,7 +365,7 @@ TEST_P(AnyCoder, PostsItsStatsOnceTheIntervalHasPassed) {
   const Harness h = Encoder(GetParam(), "stats-interval=1000000000");
   const test::ElementBus bus(h->element);
   SetCaps(h.get(), OrganisedInfo(model, 64));
-  for (guint i = 0; i < 7; ++i) {  // a slice each half second
+  for (guint i = 0; i < 7; ++i) {  // one slice every half second
     gst_harness_push(h.get(), OrganisedBuffer(model, 64, {0, i, 8, 64 * i}));
     EXPECT_EQ(bus.Pop(GST_MESSAGE_ELEMENT) != nullptr, i > 0 && i % 2 == 0) << i;
     clock.Advance(G_USEC_PER_SEC / 2);
@@ -373,7 +373,7 @@ TEST_P(AnyCoder, PostsItsStatsOnceTheIntervalHasPassed) {
 }
 
 TEST_P(AnyCoder, TellsTheTimeOfTheLastSliceAndTheMean) {
-  const test::StoppedClock clock;  // each read of it takes a microsecond
+  const test::StoppedClock clock;  // each read of the clock takes a microsecond
   const SensorModel model = test::RoomSensor();
   const Harness h = Codec(GetParam());
   SetCaps(h.get(), OrganisedInfo(model, 64));
@@ -436,7 +436,7 @@ INSTANTIATE_TEST_SUITE_P(Coders, EitherCoder, ::testing::ValuesIn(RangeCoders())
 INSTANTIATE_TEST_SUITE_P(Coders, AnyCoder, ::testing::ValuesIn(AllCoders()),
                          [](const auto& c) { return c.param.name; });
 
-// Caps without a width would stop the elements behind the decoder.
+// If the decoder output caps without a width, the elements after it would stop.
 TEST(Decoders, DropASliceWithoutAPoint) {
   const SensorModel model = test::RoomSensor();
   const Harness h = Codec(kExample);

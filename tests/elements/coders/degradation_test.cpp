@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// If coders leave data out below min-bitrate, the receiver counts the same losses as the sender.
+// Tests that the receiver counts the same losses as the sender when coders leave data out below
+// min-bitrate.
 #include <gtest/gtest.h>
 
 #include <tuple>
@@ -72,7 +73,7 @@ class BelowTheMinimum : public ::testing::TestWithParam<std::tuple<CoderCase, Pr
     static const SensorModel model = test::RoomSensor();
     return model;
   }
-  /// Pushes `scans` scans from `first` on. Returns the number of decoded slices.
+  /// Pushes `scans` scans, beginning with scan `first`. Returns the number of decoded slices.
   static guint Play(GstHarness* h, guint first, guint scans) {
     guint slices = 0;
     for (guint i = 8 * first; i < 8 * (first + scans); ++i) {
@@ -109,14 +110,14 @@ TEST_P(BelowTheMinimum, TheReceiverKnowsWhatWasLeftOut) {
   const ElementPtr dec = Find(h.get(), "dec");
   const guint64 skipped = test::StatOf(enc.get(), "scans-skipped");
   EXPECT_EQ(skipped > kScans / 10, preference.skips);
-  // The receiver cannot count scans skipped after the last scan that arrived.
+  // If scans are skipped at the end, the receiver cannot count them, because no later scan arrives.
   EXPECT_NEAR(static_cast<double>(test::StatOf(depay.get(), "scans-skipped")),
               static_cast<double>(skipped), preference.skips ? 3 : 0);
   EXPECT_EQ(test::StatOf(depay.get(), "slices-lost"), 0U);
   EXPECT_EQ(test::StatOf(dec.get(), "slices"), 8 * (kScans - skipped));
   EXPECT_EQ(test::StatOf(dec.get(), "slices-thinned") > test::StatOf(dec.get(), "slices") / 2,
             preference.thins);
-  // All slices are whole at once when the target is above the minimum again.
+  // As soon as the target is above the minimum again, all slices are complete.
   SetTarget(h.get(), 2 * needed);
   const guint64 thinned = test::StatOf(dec.get(), "slices-thinned");
   EXPECT_EQ(Play(h.get(), kScans, 5), 40U);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What only Draco's elements do: clouds of any kind, as files that other programs read.
+// Tests of features that only Draco's elements have: clouds of any kind, as files that other
+// programs can read.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -33,7 +34,8 @@ TEST(DracoEnc, CodesNoRangesOfMoreColumnsThanATurn) {
 TEST(DracoEnc, CloudsOfAnotherWidthGoOnWithTheMethodThatWasTheSmallerOne) {
   const Harness h(gst_harness_new("dracoenc"));
   for (const std::size_t width : {3000U, 2999U}) {
-    // The sequential coder makes fewer bytes in this order, the kd-tree of shuffled points.
+    // In this order of points the sequential coder needs fewer bytes. For shuffled points the
+    // kd-tree coder would need fewer.
     std::vector<std::array<float, 3>> line(width);
     for (std::size_t i = 0; i < width; ++i) {
       const auto t = static_cast<float>(i) * 0.02F;
@@ -46,7 +48,7 @@ TEST(DracoEnc, CloudsOfAnotherWidthGoOnWithTheMethodThatWasTheSmallerOne) {
     const BufferPtr encoded(gst_harness_push_and_pull(h.get(), PlainBuffer(xyz)));
     ASSERT_TRUE(encoded);
     const BufferMap map(encoded.get(), GST_MAP_READ);
-    constexpr std::size_t kMethod = 8;  // in Draco's header; 0 is the sequential coder
+    constexpr std::size_t kMethod = 8;  // position in Draco's header; 0 is the sequential coder
     EXPECT_EQ(map.data()[kMethod], 0) << width;
   }
 }
@@ -89,7 +91,7 @@ TEST(DracoEnc, GivesStockDracoFilesInXyzGeometry) {
     if (word == "v" && lines >> p[0] >> p[1] >> p[2]) points.insert(points.end(), p, p + 3);
   }
   ASSERT_EQ(points.size(), random.size());
-  // The text has six digits after the point.
+  // The text has only six digits after the decimal point.
   EXPECT_LE(LargestGap(random, points), 0.02 + 1e-5);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The property effort of lidarenc.
+// Tests of the property effort of lidarenc.
 #include <gtest/gtest.h>
 
 #include "tests/elements/coders/plain_clouds.h"
@@ -8,21 +8,22 @@
 namespace lidar::gst {
 namespace {
 
-/// lidarenc and lidardec, fed with slices of a room.
+/// A lidarenc and a lidardec, to which the test pushes slices of a room.
 class EffortHarness {
  public:
   EffortHarness(const std::string& properties, gint scans, gint seconds)
       : harness_(Codec(kLidar, properties)) {
     SetRate(scans, seconds);
   }
-  /// Sends caps.
+  /// Sets caps whose frame rate is `scans` per `seconds`.
   void SetRate(gint scans, gint seconds) {
     CloudInfo info = OrganisedInfo(model_, 64);
     info.framerate_n = scans;
     info.framerate_d = seconds;
     SetCaps(harness_.get(), info);
   }
-  /// Pushes a slice, expects that it decodes within the error, and returns its mode.
+  /// Pushes a slice, and expects that the error of the decoded slice is within the bound. Returns
+  /// the slice's mode.
   std::string Push() {
     GstBuffer* input =
         OrganisedBuffer(model_, 64, {slices_ / 8, slices_ % 8, 8, 64 * (slices_ % 8)});
@@ -62,18 +63,18 @@ TEST(Effort, MayChangeFromSliceToSlice) {
   EXPECT_EQ(h.Push(), "range-mixing2");
 }
 
-// A scan takes a minute here, so that any machine has time.
+// A scan lasts a minute here, so every machine has enough time.
 TEST(Effort, RisesByItselfWhereThereIsTime) {
   EXPECT_EQ(EffortHarness("effort=auto", 1, 60).Push(40), "range-mixing3");
 }
 
-// A slice sweeps in a microsecond here, so that no machine has time.
+// The sensor needs a microsecond for a slice here, so no machine has enough time.
 TEST(Effort, FallsByItselfWhereThereIsNone) {
   EXPECT_EQ(EffortHarness("effort=auto", 125'000, 1).Push(20), "range-adaptive");
 }
 
-// By the stopped clock a scan lasts 16 us, and the coder takes 2 us for each cloud. That is an
-// eighth of a scan, but the whole duration of a slice.
+// With the stopped clock, a scan lasts 16 us, and the coder takes 2 us per cloud. If a scan has one
+// cloud, this is an eighth of the available time. If it has eight clouds, it is all of it.
 TEST(Effort, FallsWherePointsHaveTheTimeOfASliceOnly) {
   const test::StoppedClock clock;
   for (const guint slices : {1U, 8U}) {
@@ -101,7 +102,7 @@ TEST(Effort, StaysWhereOnlyTheCapsAreOthers) {
   EXPECT_EQ(h.Push(), "range-adaptive");
 }
 
-/// A driver that leaves out missing returns makes such clouds.
+/// Such clouds come from a driver that leaves out missing returns.
 TEST(Effort, FallsWhereEachCloudHasAWidthOfItsOwn) {
   const Harness h = Encoder(kLidarXyz, "effort=auto");
   for (guint points = 500; points < 520; ++points) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What encoders report about their own errors, and about clouds that contradict themselves.
+// Tests of the error checks of encoders, and of clouds whose points contradict their ranges.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,8 @@ double Number(const GstStructure* s, const char* name) {
   return value;
 }
 
-/// Returns the distances of points with the same index, except where the point of `a` is all zero.
+/// Returns the distance between each point of `a` and the point of `b` with the same index. Omits
+/// points of `a` whose coordinates are all zero.
 std::vector<double> Distances(const std::vector<float>& a, const std::vector<float>& b) {
   std::vector<double> distances;
   for (std::size_t i = 0; i + 2 < a.size(); i += 3) {
@@ -96,7 +97,8 @@ CloudInfo PlainInfo(guint points) {
   return info;
 }
 
-/// Points two metres apart, so that a moved point is still nearest to where it was.
+/// Returns points that are two metres apart. A decoded point is therefore always nearest to its own
+/// original point.
 std::vector<float> Lattice() {
   std::vector<float> xyz;
   for (unsigned i = 0; i < 500; ++i) {
@@ -135,8 +137,8 @@ INSTANTIATE_TEST_SUITE_P(All, XyzLevels,
                          ::testing::Values("compression-level=0", "compression-level=7"));
 #endif
 
-/// The points are closer to each other than the error, so the nearest decoded point is rarely the
-/// point's own.
+/// Checks that a decoded point is compared with its own original point. The points here are closer
+/// to each other than the error, so the nearest decoded point is rarely the right one.
 void ExpectPointwiseErrors(const CoderCase& coder, const std::string& properties) {
   std::vector<float> before;
   for (unsigned i = 0; i < 500; ++i) {
@@ -182,7 +184,8 @@ TEST_P(EitherCoder, LooksAtEveryNthSliceOnlyWhateverTheirCaps) {
   EXPECT_EQ(checked, (std::vector<guint>{0, 3, 6}));
 }
 
-/// OrganisedBuffer, with all points a metre to the side of where their ranges put them.
+/// Returns the buffer of OrganisedBuffer(), but with all points moved by a metre in x. The ranges
+/// are unchanged.
 GstBuffer* MovedBuffer(const SensorModel& model, const GstLidarSlice& slice) {
   GstBuffer* buffer = OrganisedBuffer(model, 64, slice);
   BufferMap map(buffer, GST_MAP_READWRITE);
@@ -210,7 +213,8 @@ TEST_P(EitherCoder, WarnsWhenTheErrorIsLargerThanItMayBe) {
     EXPECT_FALSE(Holds(check.get()));
     EXPECT_NEAR(Number(check.get(), "largest-error"), 1, 0.021);
   }
-  // There is one warning for the errors and one for the ranges, although two slices cause both.
+  // Two slices have wrong errors and ranges, but there is only one warning for the errors and one
+  // for the ranges.
   EXPECT_EQ(codec.Warnings(), 2U);
   const StructurePtr stats = codec.Stats();
   guint64 failed = 0;
@@ -249,7 +253,7 @@ TEST_P(EitherCoder, WarnsAgainOfErrorsThatComeBack) {
   const SensorModel model = test::RoomSensor();
   CheckedCodec codec(GetParam(), "error-check=1");
   codec.SetCaps(OrganisedInfo(model, 64));
-  for (const unsigned warnings : {2U, 3U}) {  // the first round also warns of the ranges
+  for (const unsigned warnings : {2U, 3U}) {  // the first round also warns about the ranges
     for (guint i = 0; i < 2; ++i) codec.Push(MovedBuffer(model, {0, i, 8, 64 * i}));
     codec.Push(OrganisedBuffer(model, 64, {0, 2, 8, 128}));
     EXPECT_EQ(codec.Warnings(), warnings);

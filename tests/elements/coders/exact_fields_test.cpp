@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// lidarenc fields=… keep-order=true: the drivers' fields of each point decode exactly.
+// Tests of lidarenc fields=… keep-order=true: the fields that drivers add to a point are decoded
+// exactly.
 #include <gtest/gtest.h>
 
 #include "tests/elements/coders/checked_codec.h"
@@ -45,14 +46,15 @@ CloudInfo InfoOf(GstHarness* h) {
   return *CloudInfo::FromCaps(caps.get());
 }
 
-/// Returns a field of a point, as bytes.
+/// Returns the bytes of the field `name` of a point, or "none" if there is no such field.
 std::string FieldOf(const std::uint8_t* point, const PointFields& fields, const char* name) {
   const PointField* field = fields.Find(name);
   if (field == nullptr) return "none";
   return {point + field->offset, point + field->offset + SizeOf(field->type)};
 }
 
-/// Expects that `after` has the points of `before` in the same order, with equal fields `names`.
+/// Expects that `after` has the points of `before` in the same order, and that their fields `names`
+/// are equal.
 void ExpectSame(const std::vector<std::uint8_t>& before, GstBuffer* after, const CloudInfo& info,
                 const std::vector<const char*>& names) {
   const PointFields driver = *PointFields::Parse(kDriverFields);
@@ -82,7 +84,7 @@ TEST_P(ExactFieldsByEffort, ComeBackInTheirOrder) {
     const BufferPtr output = codec.Push(BufferOf(raw));
     ASSERT_TRUE(output);
     ExpectSame(raw, output.get(), InfoOf(codec.harness()), {"ring", "timestamp", "tag"});
-    // The error check compares each decoded point with its own original.
+    // The error check compares each decoded point with the original point of the same index.
     const StructurePtr check = codec.PopCheck();
     ASSERT_TRUE(check);
     EXPECT_TRUE(Holds(check.get()));
@@ -116,7 +118,7 @@ TEST(ExactFields, AreNoneUnlessTheyAreNamed) {
   EXPECT_EQ(InfoOf(h.get()).fields.ToString(), "x:F32:0,y:F32:4,z:F32:8,intensity:F32:12");
 }
 
-// Positions and intensities are always coded, at their own precision.
+// Positions and intensities are coded in any case, with their own precision.
 TEST(ExactFields, MayNameWhatComesAnyway) {
   const CoderCase coder{"exact", "lidarenc effort=1 intensity-bits=0", "lidardec"};
   CheckedCodec codec(coder, "fields=x,y,z,intensity,ring,ring,");
@@ -151,7 +153,7 @@ TEST(ExactFields, OfScansThatAreCodedAsRangesAreWarnedOf) {
   }
 }
 
-// A hostile sender may say anything in the caps.
+// The caps may be false, because a hostile sender may have made them.
 TEST(ExactFields, OfOtherTypesThanTheCapsSayAreDropped) {
   const Harness enc = Launch("lidarenc effort=1 fields=ring,timestamp");
   SetCaps(enc.get(), DriverInfo(500));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What the base classes do for a coder that is not in the tree.
+// Tests of what the base classes do for a coder that is not part of this project.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -66,7 +66,7 @@ TEST_F(ExampleCoder, MayMergePointsWithinTheBound) {
   GstLidarEncoderClass* klass = GST_LIDAR_ENCODER_GET_CLASS(enc.get());
   static gboolean (*decode)(GstLidarEncoder*, const guint8*, gsize, GArray*, GstLidarPointOrder*);
   decode = klass->decode;
-  // The first point of a cell stands for all points in it, as in a coder of voxels.
+  // Merges the points of a cell into one point, as a coder of voxels would.
   klass->decode = [](GstLidarEncoder* base, const guint8* data, gsize size, GArray* points,
                      GstLidarPointOrder* order) -> gboolean {
     if (!decode(base, data, size, points, order)) return FALSE;
@@ -108,7 +108,7 @@ TEST_F(ExampleCoder, IsWarnedOfWhereItsSlicesCannotBeDecoded) {
   EXPECT_FALSE(Holds(codec.PopCheck().get()));
 }
 
-/// Receivers would take an empty buffer for a lost slice.
+/// A receiver would mistake an empty buffer for a lost slice.
 TEST_F(ExampleCoder, SendsNoSliceWithoutBytes) {
   const Harness h = Encoder(kExample);
   SetCaps(h.get(), OrganisedInfo(Sensor(), 64));
@@ -150,7 +150,7 @@ TEST_F(ExampleCoder, MayGiveAsManyPointsAsAreAllowedAndNoMore) {
   const ElementPtr dec(gst_bin_get_by_name(GST_BIN(h->element), "dec"));
   g_object_set(dec.get(), "max-points", 1000U, nullptr);
   SetCaps(h.get(), OrganisedInfo(Sensor(), 64));
-  // A decoder that ignores the limit of its points.
+  // Replaces the decoder's functions by functions that ignore the limit of points.
   GstLidarDecoderClass* klass = GST_LIDAR_DECODER_GET_CLASS(dec.get());
   static guint width = 0;
   const auto decode = klass->decode;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Golden files hold what coders output, send and post in scripted runs.
+// Compares what coders output, send and post in scripted runs with golden files.
 #include <gtest/gtest.h>
 
 #ifdef HAVE_DRACO
@@ -18,7 +18,7 @@ namespace {
 using test::Course;
 
 constexpr guint kCourseSlices = 4;
-constexpr guint kCourseColumns = 32;  // a slice
+constexpr guint kCourseColumns = 32;  // columns per slice
 constexpr guint kCourseBeams = 8;
 constexpr guint kCourseStep = 22;
 
@@ -44,7 +44,8 @@ std::string CourseCaps(const CloudInfo& info) {
   return text.get();
 }
 
-/// Walls and gaps made of integers, the same in each scan.
+/// Returns a slice of walls and gaps. They are computed from integers, and are the same in each
+/// scan.
 BufferPtr CourseSlice(guint scan, guint index) {
   const CloudInfo info = CourseInfo();
   std::vector<std::uint32_t> ranges;
@@ -119,7 +120,7 @@ void EncoderCourse(Course& c) {
   c.Push("acknowledged", CourseSlice(3, 2));
   c.PushUpstream("key unit", KeyUnit());
   c.Push("behind a request", CourseSlice(3, 3));
-  // With two receivers no slice refers to another.
+  // If there are two receivers, slices do not refer to other slices.
   GstLidarSlicesReceived other_received{6, 0, {}};
   c.PushUpstream("second receiver", gst_lidar_event_new_slices_received(&other_received));
   c.Set("max-error", "0.2");
@@ -216,8 +217,8 @@ void DecoderCourse(Course& c, const std::string& encoder) {
   c.End();
 }
 
-/// Returns true if this coder's sizes are those of the golden files: Draco's differ between
-/// releases.
+/// Returns true if this coder's slices must have the sizes in the golden files. The sizes of
+/// Draco's slices differ between its releases.
 bool HasTheirSizes([[maybe_unused]] const std::string& name) {
 #ifdef HAVE_DRACO
   if (name.rfind("draco", 0) == 0) return std::string(draco::kDracoVersion) == "1.5.5";

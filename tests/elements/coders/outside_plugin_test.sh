@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# The folder docs/examples/coder, copied, builds with what is installed: headers, pkg-config,
-# library. Its slices come through each transport to its decoder, and no part between them knows the
-# coder. Usage: outside_plugin_test.sh SOURCE_ROOT BUILD_ROOT; LIDAR_EDGE names the program.
+# Copies the folder docs/examples/coder and builds it with the installed headers, library and
+# pkg-config file. Then sends its slices over each transport to its decoder. No element between
+# encoder and decoder knows this coder.
+# Usage: outside_plugin_test.sh SOURCE_ROOT BUILD_ROOT; LIDAR_EDGE is the path of that program.
 set -euo pipefail
 source=$1
 build=$2
@@ -30,15 +31,16 @@ done
 
 play=(timeout 60 gst-launch-1.0 -q)
 mapfile -t ports < <(python3 "$source/tests/support/ports.py" 1 1)
-# The decoder gives back each point of 40 slices.
+# Decodes 40 slices without a transport. The decoder outputs every point.
 encoder='lidartestsrc model=os1-32 mode=512x10 num-buffers=40 ! exampleenc max-error=0.02'
 decoder='exampledec ! filesink async=false location'
 # shellcheck disable=SC2086
 "${play[@]}" $encoder ! $decoder=direct
 [ "$(stat -c %s direct)" -gt 500000 ] || { echo "the decoder gave too little" >&2; exit 1; }
 
-# Every slice arrives. Each point is within twice the bound of its place without a network, because
-# the controller may choose finer or coarser steps.
+# Compares the output after a transport with the output without one. Every slice must have arrived.
+# A point may differ by up to twice the bound, because congestion control may choose finer or
+# coarser steps.
 same() {
   python3 - direct "$1" <<'END' || { echo "$1 is not what was sent" >&2; exit 1; }
 import array, sys
@@ -57,7 +59,7 @@ start() {
   until eval "$1"; do kill -0 $! || { cat output >&2; exit 1; }; sleep 0.05; done
 }
 
-# A source that is not live waits for room in the sender's queue, so that no slice is skipped.
+# The source is not live, so it waits while the sender's queue is full, and no slice is skipped.
 send="rtplidarpay ! screamsink host=127.0.0.1 port=${ports[0]} start-bitrate=20000000"
 bound() { grep -qs "$(printf ':%04X ' "${ports[0]}")" /proc/net/udp /proc/net/udp6; }
 # shellcheck disable=SC2086
@@ -85,7 +87,7 @@ if [ -n "$server" ] && has natssink; then
   cmp direct nats
 fi
 
-# The file is complete once the robot's goodbye has arrived.
+# The edge completes the file once the robot's goodbye has arrived.
 closed() { [ "$(tail -c 8 "$1" 2>/dev/null | tr -d '\0' | tail -c +2 | head -c 5)" = MCAP0 ]; }
 # shellcheck disable=SC2086
 if [ -n "${LIDAR_EDGE:-}" ] && has mcapsink; then

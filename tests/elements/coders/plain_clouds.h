@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Clouds of one row without a sensor model, for tests of the coders that take them.
+// Clouds with one row and without a sensor model, for tests of the coders that accept them.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -19,7 +19,7 @@ inline CloudInfo XyzInfo(guint points) {
   return info;
 }
 
-/// x, y, z and an intensity of 0.5 for each point.
+/// Returns a buffer with x, y, z and an intensity of 0.5 for each point.
 inline GstBuffer* PlainBuffer(const std::vector<float>& xyz) {
   std::vector<float> raw;
   for (std::size_t i = 0; i + 2 < xyz.size(); i += 3)
@@ -30,7 +30,8 @@ inline GstBuffer* PlainBuffer(const std::vector<float>& xyz) {
   return buffer;
 }
 
-/// Returns the largest distance from a point of `a` to the nearest of `b`.
+/// Computes, for each point of `a`, the distance to the nearest point of `b`. Returns the largest
+/// of these distances.
 inline double LargestGap(const std::vector<float>& a, const std::vector<float>& b) {
   double largest = 0;
   for (std::size_t i = 0; i + 2 < a.size(); i += 3) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Clouds of one row without a sensor model, with any points in them.
+// Tests with clouds that have one row and no sensor model. Their points may have any values.
 #include <gtest/gtest.h>
 
 #include <tuple>
@@ -9,7 +9,7 @@
 namespace lidar::gst {
 namespace {
 
-/// Coders of clouds without a sensor model, with their settings.
+/// Returns the coders of clouds without a sensor model, with several settings.
 std::vector<CoderCase> XyzCoders() {
   return {
       {"lidar_effort_0", "lidarenc effort=0", "lidardec", true},
@@ -25,7 +25,7 @@ std::vector<CoderCase> XyzCoders() {
 struct PlainCase {
   const char* name;
   std::vector<float> xyz;
-  std::vector<float> expected;  // finite points that are not all zero
+  std::vector<float> expected;  // the points that are finite and not all zero
 };
 class PlainClouds : public ::testing::TestWithParam<std::tuple<PlainCase, CoderCase>> {};
 
@@ -77,7 +77,7 @@ INSTANTIATE_TEST_SUITE_P(All, SizesOfClouds, ::testing::ValuesIn(XyzCoders()),
 
 class DriverFields : public ::testing::TestWithParam<CoderCase> {};
 
-// Rings past 65,535 that jump, and times that go back.
+// The rings jump and are larger than 65,535, and the timestamps decrease.
 TEST_P(DriverFields, AreNeitherNeededNorBelieved) {
   const Harness h = Codec(GetParam(), "max-error=0.02");
   const std::vector<float> xyz = RandomPoints(500, 40);
@@ -105,7 +105,7 @@ TEST_P(DriverFields, AreNeitherNeededNorBelieved) {
   EXPECT_LE(LargestGap(xyz, after), 0.02);
 }
 
-// The other sensor has other fields and another number of points.
+// The second cloud has other fields and fewer points, as from another sensor.
 TEST_P(DriverFields, MayChangeWhileTheStreamRuns) {
   const Harness h = Codec(GetParam(), "max-error=0.02");
   for (const std::size_t points : {500U, 80U, 500U}) {
@@ -122,7 +122,8 @@ TEST_P(DriverFields, MayChangeWhileTheStreamRuns) {
 INSTANTIATE_TEST_SUITE_P(All, DriverFields, ::testing::ValuesIn(XyzCoders()),
                          [](const auto& c) { return std::string(c.param.name); });
 
-/// What 16 beams see of a room in the first `firings` of 450 firings.
+/// Returns the points that a sensor with 16 beams sees of a room in the first `firings` of 450
+/// firings.
 std::vector<float> SpinningScan(int firings) {
   std::vector<float> xyz;
   for (int firing = 0; firing < firings; ++firing) {
@@ -138,7 +139,7 @@ std::vector<float> SpinningScan(int firings) {
   return xyz;
 }
 
-/// Codes clouds one after the other. Returns whether the last one is coded by beams.
+/// Codes the clouds in order. Returns true if the last cloud was coded by beams.
 bool ComesFromBeams(const std::vector<std::vector<float>>& clouds) {
   const Harness h = Launch("lidarenc effort=1 max-error=0.02");
   bool has_beams = false;
@@ -147,12 +148,12 @@ bool ComesFromBeams(const std::vector<std::vector<float>>& clouds) {
     EXPECT_EQ(gst_harness_push(h.get(), PlainBuffer(xyz)), GST_FLOW_OK);
     const BufferPtr slice(gst_harness_pull(h.get()));
     const BufferMap map(slice.get(), GST_MAP_READ);
-    has_beams = (map.data()[0] & 16) != 0;  // docs/cloud-coder.md
+    has_beams = (map.data()[0] & 16) != 0;  // flag in docs/cloud-coder.md
   }
   return has_beams;
 }
 
-// Drivers leave out missing returns, so each cloud has another size and other caps.
+// Drivers leave out missing returns. Therefore each cloud has a different size, and different caps.
 TEST(LidarEnc, KnowsASensorWhoseCloudsChangeInSize) {
   EXPECT_TRUE(ComesFromBeams({SpinningScan(450)}));
   EXPECT_FALSE(ComesFromBeams({SpinningScan(6)}));
@@ -161,7 +162,8 @@ TEST(LidarEnc, KnowsASensorWhoseCloudsChangeInSize) {
 
 class StoppedSink : public ::testing::TestWithParam<CoderCase> {};
 
-// When a pipeline stops, its pads flush one after the other, from the last element on.
+// When a pipeline stops, its elements stop one after another, beginning with the sink. Upstream
+// elements may still push meanwhile.
 TEST_P(StoppedSink, IsNoError) {
   const Harness h = Codec(GetParam(), "max-error=0.02");
   SetCaps(h.get(), XyzInfo(500));

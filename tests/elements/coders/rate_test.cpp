@@ -6,8 +6,8 @@
 namespace lidar::gst {
 namespace {
 
-/// Returns the bytes of each of `scans` scans of 8 slices; 0 for a skipped scan. Checks that scans
-/// are whole.
+/// Pushes `scans` scans of 8 slices. Returns the bytes of each scan, or 0 for a skipped scan.
+/// Expects that no scan is skipped only in part.
 std::vector<gsize> ScanSizes(GstHarness* h, const SensorModel& model, guint scans) {
   std::vector<gsize> sizes;
   for (guint scan = 0; scan < scans; ++scan) {
@@ -37,7 +37,7 @@ TEST_P(EitherCoder, KeepsToATargetBitrateThatComesFromDownstream) {
   const SensorModel model = test::RoomSensor();
   const Harness h = Encoder(GetParam(), "max-error=0.2 intensity-bits=0 bitrate=1");
   SetCaps(h.get(), OrganisedInfo(model, 64));
-  // The target is about 4 bits a return.
+  // This target is about 4 bits per return.
   const GstLidarTargetBitrate target{640'000, 0, 0, 0, 0, 0, "update"};
   gst_harness_push_upstream_event(h.get(), gst_lidar_event_new_target_bitrate(&target));
   const auto sizes = ScanSizes(h.get(), model, 30);
@@ -106,7 +106,7 @@ TEST_P(EitherCoder, TellsItsBitrateFromTheFirstScanOn) {
   info.framerate_d = 2;
   SetCaps(h.get(), info);
   const auto sizes = ScanSizes(h.get(), model, 2);
-  // The first scan is counted when the second one begins. There are 7.5 scans in a second.
+  // The first scan is counted when the second scan begins. The frame rate is 7.5 scans per second.
   EXPECT_NEAR(StatOf(h.get(), "bitrate"), 60.0 * static_cast<double>(sizes[0]),
               0.2 * 60 * static_cast<double>(sizes[0]));
 }
@@ -140,7 +140,7 @@ TEST_P(EitherCoder, TellsDownstreamWhatItsErrorBoundNeeds) {
   GstLidarBitrateBounds bounds{};
   while (const EventPtr event{gst_harness_try_pull_event(h.get())})
     gst_lidar_event_parse_bitrate_bounds(event.get(), &bounds);
-  // The nominal bitrate is what the bound needs, with all intensity bits.
+  // The nominal bitrate is the bitrate that the error bound needs, with all bits of the intensity.
   EXPECT_NEAR(bounds.nominal_bitrate, 80.0 * static_cast<double>(sizes[9]),
               0.1 * 80 * static_cast<double>(sizes[9]));
   EXPECT_LE(bounds.min_bitrate, bounds.nominal_bitrate);
@@ -157,8 +157,8 @@ TEST_P(EitherCoder, SkipsWholeScansEvenlyBelowTheMinimum) {
   const GstLidarTargetBitrate target{static_cast<guint>(needed) * 40, 0, 0, 0, 0, 0, "update"};
   gst_harness_push_upstream_event(tight.get(), gst_lidar_event_new_target_bitrate(&target));
   const auto sizes = ScanSizes(tight.get(), model, 30);
-  // The target is half of what is needed, so every second scan is sent, and no two in a row are
-  // skipped.
+  // The target is half of the bitrate that is needed. Therefore every second scan is sent, and two
+  // scans in a row are never skipped.
   guint sent = 0;
   for (std::size_t i = 10; i < 30; ++i) {
     sent += sizes[i] > 0 ? 1U : 0U;
@@ -186,7 +186,7 @@ TEST_P(EitherCoder, ThinsScansInsteadWhereTheFrameRateMattersMore) {
     late += static_cast<double>(sizes[i]) / 10;
   }
   EXPECT_NEAR(late, static_cast<double>(needed) / 2, 0.1 * static_cast<double>(needed));
-  // The encoder counts the room's returns without the beams that were left out.
+  // The number of returns does not include those of beams that the encoder left out.
   const ElementPtr enc(gst_bin_get_by_name(GST_BIN(tight->element), "enc"));
   EXPECT_LT(test::StatOf(enc.get(), "returns"), 20 * 32 * 512 * 3 / 4);
 }

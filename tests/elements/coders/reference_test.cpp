@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// lidarenc, rtplidarpay, rtplidardepay and lidardec over a link that the test makes: what arrives,
-// what is acknowledged, and what the decoder asks for.
+// Tests of lidarenc, rtplidarpay, rtplidardepay and lidardec over a simulated link: which packets
+// arrive, which are acknowledged, and what the decoder requests.
 #include <gst/rtp/gstrtpbuffer.h>
 #include <gtest/gtest.h>
 
@@ -25,8 +25,8 @@ class StaticSensor : public ::testing::Test {
     SetCaps(sender_.get(), info);
   }
 
-  /// Sends one scan. Packets for which `loses` is true never arrive; the others can be
-  /// acknowledged, after each slice.
+  /// Sends one scan. Packets for which `loses` returns true do not arrive. If `acknowledges_` is
+  /// true, the packets that arrived are acknowledged after each slice.
   void Scan(const std::function<bool(guint packet)>& loses = nullptr) {
     for (guint i = 0; i < kSlices; ++i) {
       const GstLidarSlice slice{scan_, i, kSlices, 64 * i};
@@ -50,7 +50,7 @@ class StaticSensor : public ::testing::Test {
     arrived_.clear();
     gst_harness_push_upstream_event(sender_.get(), gst_lidar_event_new_packets_received(&received));
   }
-  /// Reports slices that the encoder never sent.
+  /// Sends acknowledgements of slices that the encoder never sent.
   void AcknowledgeUnknown() {
     GstLidarSlicesReceived received{1, GST_LIDAR_MAX_RECEIVED, {}};
     for (GstLidarReceivedSlice& slice : received.slices) slice = {4'000'000, 0};
@@ -61,8 +61,8 @@ class StaticSensor : public ::testing::Test {
         sender_.get(), gst_event_new_custom(GST_EVENT_CUSTOM_UPSTREAM,
                                             gst_structure_new_empty("GstForceKeyUnit")));
   }
-  /// Passes the receiver's requests for key units to the sender, unless they are lost. Expects that
-  /// they are numbered from 1 on. Returns true if there was a request.
+  /// Expects that the receiver's requests for key units are numbered from 1 on. Passes them to the
+  /// sender if `arrives` is true. Returns true if there was a request.
   bool CarryKeyRequest(bool arrives = true) {
     bool asked = false;
     while (EventPtr event{gst_harness_try_pull_upstream_event(receiver_.get())}) {
@@ -85,14 +85,14 @@ class StaticSensor : public ::testing::Test {
     return ElementPtr(gst_bin_get_by_name(GST_BIN(harness->element), name));
   }
   ElementPtr AtSender(const char* name) { return Get(name, sender_); }
-  /// Drops the decoder's slices, but not its caps.
+  /// Restarts the decoder, which drops its slices but keeps its caps.
   void RestartDecoder() {
     const ElementPtr dec = Get("dec", receiver_);
     gst_element_set_state(dec.get(), GST_STATE_READY);
     gst_element_sync_state_with_parent(dec.get());
   }
 
-  /// Adds a second branch to the tee `t`.
+  /// Links a second branch to the tee `t`.
   void AddBranch() {
     GstElement* sink = gst_element_factory_make("fakesink", nullptr);
     g_object_set(sink, "sync", FALSE, "async", FALSE, nullptr);
@@ -102,12 +102,12 @@ class StaticSensor : public ::testing::Test {
   }
 
   test::StoppedClock clock_;
-  guint checks_every_ = 1;  // slices
+  guint checks_every_ = 1;  // interval between error checks, in slices
   bool acknowledges_ = true;
   guint key_requests_ = 0;
 
  private:
-  /// Adds noise of the sensor to a room that is the same in all scans.
+  /// Adds simulated sensor noise to the ranges, because the room itself is the same in all scans.
   void AddNoise(GstBuffer* buffer) {
     BufferMap map(buffer, GST_MAP_READWRITE);
     const RangeProjection projection(model_);
@@ -164,7 +164,7 @@ TEST_F(StaticSensor, IsCodedByTheScansThatTheReceiverHas) {
   EXPECT_EQ(Encoded("error-checks-failed"), 0U);
 }
 
-/// The error check decodes one slice in three, but not the slices that it refers to.
+/// The error check decodes every third slice, but does not decode the slices that these refer to.
 TEST_F(StaticSensor, IsCheckedByTheScansThatTheReceiverHas) {
   checks_every_ = 3;
   Start();
@@ -198,7 +198,7 @@ TEST_F(StaticSensor, IsCodedSliceBySliceOnceABranchOfATeeIsAdded) {
   Scans(4);
   ASSERT_EQ(Mode(), "range-temporal1");
   AddBranch();
-  clock_.Advance(G_USEC_PER_SEC / 10);  // the encoder looks for tees downstream this often
+  clock_.Advance(G_USEC_PER_SEC / 10);  // the encoder looks for tees once in this time
   Scan();
   EXPECT_EQ(Mode(), "range-mixing1") << "the new branch has none of what was sent before";
 }
@@ -233,7 +233,7 @@ TEST_F(StaticSensor, IsCodedSliceBySliceOnceInEachKeyInterval) {
 
 TEST_F(StaticSensor, IsCodedByWhatIsThereWhateverWasLost) {
   Start();
-  int referring = 0;  // scans whose last slice refers to another slice
+  int referring = 0;  // number of scans whose last slice refers to another slice
   for (int i = 0; i < 12; ++i) {
     Scan([](guint packet) { return packet % 5 == 2; });
     referring += Mode() == "range-temporal1" ? 1 : 0;
@@ -269,7 +269,7 @@ TEST_F(StaticSensor, IsAskedForSlicesThatStandAloneTwiceASecondAtMost) {
   EXPECT_EQ(key_requests_, 3U);
 }
 
-/// The encoder keeps 4,096 reports until the next cloud, and drops the others.
+/// Until the next cloud, the encoder stores at most 4,096 acknowledgements and drops the rest.
 TEST_F(StaticSensor, IsCodedByNoMoreReportsThanTheEncoderKeeps) {
   Start();
   Scans(2);

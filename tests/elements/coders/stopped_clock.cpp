@@ -7,10 +7,10 @@
 #include <ctime>
 
 namespace {
-std::atomic<gint64> stopped_at{0};  // [us]; 0: the clock runs
+std::atomic<gint64> stopped_at{0};  // [us]; 0: the real time
 }  // namespace
 
-/// Replaces GLib's function in this program, and in the plugins that it loads.
+/// Replaces GLib's function in this program and in the plugins that it loads.
 extern "C" __attribute__((visibility("default"))) gint64 g_get_monotonic_time() {
   if (stopped_at != 0) return ++stopped_at;
   timespec now{};

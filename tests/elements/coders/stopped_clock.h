@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Stops GLib's monotonic clock for the coders, whose references end 2 s after the last report.
+// Stops GLib's monotonic clock. Coders use this clock to give up their references 2 s after the
+// last acknowledgement.
 #pragma once
 #include <glib.h>
 
 namespace lidar::test {
 
-/// While this object lives, a microsecond passes with each read of the clock. For tests without
-/// threads: a wait with a time limit would end at once.
+/// While an object of this class exists, the clock advances only by a microsecond with each read.
+/// It is for tests without threads, because a wait with a time limit would end at once.
 class StoppedClock {
  public:
   StoppedClock();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Every coder's slices through their transports: files, and SRTP under congestion control.
+// Tests that send the slices of every coder over their transports: files, and SRTP with congestion
+// control.
 #include <gtest/gtest.h>
 
 #include "tests/elements/coders/coder_harness.h"
@@ -48,7 +49,7 @@ TEST_P(Transport, GoesThroughSrtpUnderCongestionControl) {
   gst_element_get_state(in.get(), nullptr, nullptr, test::kPatience_ns);
   const guint port = test::PortOf(in.get());
   EXPECT_NE(port, 0U);
-  // The source is not live: it waits for room in the sender's queue, so nothing is dropped.
+  // The source is not live, so it waits while the sender's queue is full, and nothing is dropped.
   test::Pipeline sender(
       Sender("num-buffers=24") +
       " ! screamsink start-bitrate=20000000 host=127.0.0.1 port=" + std::to_string(port) + key);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Access to foxglovesink: its page, its token, its port.
+// Tests of who can reach foxglovesink: its page, its token and its port.
 #include <gtest/gtest.h>
 
 #include <utility>
@@ -80,7 +80,7 @@ TEST(FoxgloveSink, AdmitsNoMoreThanMaxClientsAtATime) {
   EXPECT_TRUE(Peer(&sink).connected());
 }
 
-/// Returns the error of a start with these properties.
+/// Starts foxglovesink with these properties, and returns the text of its error.
 std::string ErrorOf(const std::string& properties) {
   const gst::ElementPtr element(gst_parse_launch(("foxglovesink " + properties).c_str(), nullptr));
   const ElementBus bus(element.get());

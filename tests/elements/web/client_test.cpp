@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A connection on a test clock, whose peer reads nothing, sends nothing, or sends nonsense.
+// Tests of a connection on a test clock. The peer reads nothing, sends nothing, or sends nonsense.
 #include "ext/web/client.h"
 
 #include <gio/gunixsocketaddress.h>
@@ -42,7 +42,7 @@ class Connection : public ::testing::Test {
     const ssize_t size = recv(peer_, bytes.data(), bytes.size(), MSG_DONTWAIT);
     return {bytes.data(), size > 0 ? static_cast<std::size_t>(size) : 0};
   }
-  /// Returns a message larger than the buffers of sockets.
+  /// Returns a message that is larger than the buffers of sockets.
   static SharedMessage Large() {
     auto message = std::make_shared<Message>();
     message->payload.resize(4 << 20);
@@ -59,7 +59,8 @@ TEST_F(Connection, ThatSaysNothingIsAskedAndEnds) {
   TickAt(5);
   EXPECT_EQ(Read(), "");
   TickAt(11);
-  EXPECT_EQ(Read(), std::string("\x89\0", 2));  // a ping, before proxies close what is idle
+  // A ping, so that proxies do not close an idle connection.
+  EXPECT_EQ(Read(), std::string("\x89\0", 2));
   for (const gint64 seconds : {12, 21, 29}) {
     TickAt(seconds);
     EXPECT_EQ(Read(), "") << "it was asked";
@@ -86,7 +87,7 @@ TEST_F(Connection, ThatAnswersPingsLives) {
   EXPECT_EQ(closed_, 0);
 }
 
-/// A peer neither gets a ping nor answers within a frame.
+/// While a large frame is being sent, the peer gets no ping and cannot answer one.
 TEST_F(Connection, ThatTakesALongFrameSlowlyLivesWhileItTakesSome) {
   client_->Send({1, 1, Large()}, 1);
   std::array<char, 1 << 16> part{};
@@ -123,16 +124,16 @@ TEST_F(Connection, ThatHasDrawnWhatItDidNotReadEnds) {
   EXPECT_EQ(closed_, 1);
 }
 
-/// A frame of the server.
+/// A frame that the server sends.
 struct ServerFrame {
   unsigned opcode = 0;
   std::string payload;
 };
 
-/// A peer that speaks the protocol.
+/// A fixture whose peer speaks the WebSocket protocol.
 class Conversation : public Connection {
  protected:
-  /// Returns all frames that the client sends until it is idle.
+  /// Returns the frames that `client_` sends, until it sends nothing more.
   std::vector<ServerFrame> Frames() {
     std::array<char, 1 << 16> bytes{};
     for (int idle = 0; idle < 3;) {
@@ -155,7 +156,7 @@ class Conversation : public Connection {
       read_.erase(0, r.position());
     }
   }
-  /// Sends a masked frame, as clients do; the mask is zero.
+  /// Sends a masked frame, as a WebSocket client must. The mask is zero.
   void Say(unsigned opcode, const std::string& payload) {
     std::string frame{static_cast<char>(0x80U | opcode), static_cast<char>(0x80U | payload.size())};
     frame += std::string(4, '\0') + payload;
@@ -171,7 +172,7 @@ class Conversation : public Connection {
     slice->payload.assign(text.begin(), text.end());
     return slice;
   }
-  /// Returns the last two bytes of each frame's payload, which differ between frames.
+  /// Returns the last two bytes of the payload of each frame. They identify the frame in a test.
   static std::vector<std::string> EndsOf(const std::vector<ServerFrame>& frames) {
     std::vector<std::string> ends;
     for (const ServerFrame& f : frames) ends.push_back(f.payload.substr(f.payload.size() - 2));
@@ -199,7 +200,7 @@ TEST_F(Conversation, EndsWithTheReasonAsAnAnswer) {
   const auto frames = Frames();
   ASSERT_EQ(frames.size(), 1U);
   EXPECT_EQ(frames[0].opcode, 8U);
-  EXPECT_EQ(frames[0].payload, std::string("\x03\xe8", 2));  // 1000
+  EXPECT_EQ(frames[0].payload, std::string("\x03\xe8", 2));  // close code 1000
   EXPECT_EQ(closed_, 1);
   client_->SendText("too late");
   EXPECT_TRUE(Frames().empty());
@@ -210,7 +211,7 @@ TEST_F(Conversation, ThatIsClosedByUsNamesTheReason) {
   const auto frames = Frames();
   ASSERT_EQ(frames.size(), 1U);
   EXPECT_EQ(frames[0].opcode, 8U);
-  EXPECT_EQ(frames[0].payload, std::string("\x11\x31", 2));  // 4401
+  EXPECT_EQ(frames[0].payload, std::string("\x11\x31", 2));  // close code 4401
   EXPECT_EQ(closed_, 1);
 }
 
@@ -226,7 +227,7 @@ TEST_F(Conversation, CountsWhatThePeerGot) {
   EXPECT_EQ(client_->counters().bytes, bytes_);
 }
 
-/// Other messages wait while a large frame is under way.
+/// While a large frame is being sent, all other messages wait.
 TEST_F(Conversation, SendsControlsThenSlicesThenMessages) {
   client_->Send({1, 1, Large()}, 1);
   client_->Send({1, 1, Text("m1")}, 4);

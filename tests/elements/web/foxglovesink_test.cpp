@@ -137,12 +137,12 @@ TEST(FoxgloveSink, OfTwoSubscriptionsOfATopicTheNewestCounts) {
   sink.PushCloud(7);
   EXPECT_EQ(peer.Next().subscription, 2U);
   const guint64 sent = sink.Stat("points-sent");
-  peer.SendText(R"({"op":"unsubscribe","subscriptionIds":[1]})");  // replaced by 2
+  peer.SendText(R"({"op":"unsubscribe","subscriptionIds":[1]})");  // subscription 2 replaced it
   peer.Sync();
   sink.PushCloud(8);
   EXPECT_EQ(FirstX(peer.Next()), 8.0F);
   EXPECT_GT(sink.Stat("points-sent"), sent);
-  // After that the topic has no subscriber.
+  // Without subscription 2 the topic has no subscriber.
   peer.SendText(R"({"op":"unsubscribe","subscriptionIds":[2]})");
   peer.Sync();
   const guint64 before = sink.Stat("points-sent");
@@ -158,9 +158,9 @@ TEST(FoxgloveSink, ASubscriptionIdNamesOneChannel) {
   peer.Subscribe("/points", 1);
   const std::size_t before = peer.statuses.size();
   peer.Subscribe("/statistics", 1);
-  EXPECT_EQ(peer.statuses.size(), before + 2);  // answers to the refused request and to Sync()
+  EXPECT_EQ(peer.statuses.size(), before + 2);  // one for the refused request, one for Sync()
   EXPECT_EQ(sink.Stat("malformed"), 1U);
-  peer.Subscribe("/points", 1);  // the same channel again is no error
+  peer.Subscribe("/points", 1);  // repeating a subscription is no error
   EXPECT_EQ(sink.Stat("malformed"), 1U);
   peer.SendText(R"({"op":"unsubscribe","subscriptionIds":[1]})");
   peer.Sync();
@@ -202,7 +202,7 @@ TEST(FoxgloveSink, AClientThatGoesWantsNothingAnyMore) {
   EXPECT_GT(bytes, 64U);
   sink.PushCloud(8);
   EXPECT_EQ(sink.Stat("points-sent"), before);
-  // The counts include those of the client that has left.
+  // The counters also include the client that has left.
   Peer second(&sink);
   second.Subscribe("/points", 1);
   sink.PushCloud(9);
@@ -277,7 +277,7 @@ TEST(FoxgloveSink, SendsThePosesThatOdometryPutOnClouds) {
   peer.Subscribe("/tf", 2);
   peer.received.clear();
   push();
-  const Received transform = peer.Next();  // before its cloud
+  const Received transform = peer.Next();  // the transform comes before its cloud
   ASSERT_EQ(transform.subscription, 2U);
   EXPECT_EQ(Parse(transform).Message(4).Double(3), 6.0);
   EXPECT_EQ(peer.Next().subscription, 1U);

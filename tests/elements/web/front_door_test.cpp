@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The code that accepts connections, on a test clock.
+// Tests of the code that accepts connections, on a test clock.
 #include "ext/web/front_door.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ namespace {
 
 constexpr gint64 kSecond_us = G_USEC_PER_SEC;
 
-/// A client's end of a connection to a port of this machine.
+/// Connects to a port of this machine. Returns the client's end of the connection.
 ObjectPtr<GSocketConnection> Connect(guint16 port, const char* from = "127.0.0.1") {
   const ObjectPtr<GSocketClient> client(g_socket_client_new());
   const ObjectPtr<GSocketAddress> address(g_inet_socket_address_new_from_string(from, 0));
@@ -35,7 +35,7 @@ ObjectPtr<GSocketConnection> Connect(guint16 port, const char* from = "127.0.0.1
       g_socket_client_connect_to_host(client.get(), "127.0.0.1", port, nullptr, nullptr));
 }
 
-/// Returns true if the other end has ended the connection.
+/// Returns true if the other end has closed the connection.
 bool HasEnded(const ObjectPtr<GSocketConnection>& connection) {
   GSocket* socket = g_socket_connection_get_socket(connection.get());
   return (g_socket_condition_check(socket, G_IO_IN) & G_IO_IN) != 0;
@@ -52,7 +52,7 @@ TEST(FrontDoor, EndsAfterAMinuteWhatAsksForNothing) {
   const auto silent = Connect(port);
   ASSERT_TRUE(silent);
   const gint64 begin = g_get_monotonic_time();
-  // The minute begins when the door sees the connection, which may be later.
+  // The minute begins when `door` notices the connection, which may be later than `begin`.
   EXPECT_TRUE(test::WaitUntil([&] {
     door.Tick(begin + 55 * kSecond_us);
     EXPECT_EQ(door.evicted(), 0U);
@@ -100,7 +100,8 @@ TEST(FrontDoor, EndsTheOldestConnectionOfAllWhereThereAreTooMany) {
   EXPECT_EQ(door.evicted(), 2U);
 }
 
-/// Peers that begin a handshake and stop.
+/// A fixture whose peers connect from several addresses. Each peer begins a TLS handshake, but does
+/// not continue it.
 class SomeAddresses : public test::FolderTest {
  protected:
   void SetUp() override {
@@ -127,11 +128,11 @@ class SomeAddresses : public test::FolderTest {
   std::size_t Ended() const {
     return static_cast<std::size_t>(std::count_if(peers_.begin(), peers_.end(), HasEnded));
   }
-  /// Lets the handshakes notice new connections.
+  /// Runs the main context, so that `handshakes_` notices new connections.
   static void Notice() {
     for (int i = 0; i < 50; ++i) g_main_context_iteration(nullptr, FALSE);
   }
-  /// Advances time so far that all running handshakes end.
+  /// Tells `handshakes_` a time at which all handshakes that run now have timed out.
   void EndThoseThatRun() { handshakes_.Tick(g_get_monotonic_time() + 11 * kSecond_us); }
 
   ObjectPtr<GTlsCertificate> certificate_;
@@ -144,7 +145,7 @@ class SomeAddresses : public test::FolderTest {
 TEST_F(SomeAddresses, ShareTheTurnsOfHandshakesAndEachEndBeginsAnother) {
   for (int i = 0; i < 9; ++i) Begin("127.0.0.2");
   Begin("127.0.0.1");
-  Notice();  // before running handshakes end
+  Notice();  // must come before running handshakes end
   EndThoseThatRun();
   EXPECT_TRUE(test::WaitUntil([this] { return HasEnded(peers_.back()); }))
       << "three of the other address run, and this one";
@@ -158,7 +159,7 @@ TEST_F(SomeAddresses, ShareTheTurnsOfHandshakesAndEachEndBeginsAnother) {
 TEST_F(SomeAddresses, TheOneWithTheFewestHandshakesIsNext) {
   for (const char* from : {"127.0.0.2", "127.0.0.3", "127.0.0.4"})
     for (int i = 0; i < 3; ++i) Begin(from);
-  Notice();  // eight run, and one of the third address waits
+  Notice();  // eight handshakes run, and one of the third address waits
   Begin("127.0.0.1");
   Notice();
   g_socket_shutdown(g_socket_connection_get_socket(peers_[0].get()), FALSE, TRUE, nullptr);
@@ -201,7 +202,8 @@ class EmptyArchive final : public Archive {
   std::uint64_t damaged() const override { return 0; }
 };
 
-/// A viewer of a recording, whose end of the connection is `socket`.
+/// A viewer that is subscribed to a topic with a recording. `socket` is the viewer's end of the
+/// connection.
 struct RecordingViewer {
   explicit RecordingViewer(std::unique_ptr<Archive> archive,
                            std::function<void(std::string)> warn = nullptr)
@@ -242,7 +244,7 @@ TEST(SliceService, WantsNothingRecodedForAViewerOfTheRecording) {
   const auto deliver = [&](std::uint32_t scan) {
     auto slice = std::make_shared<SliceMessage>();
     slice->id.scan = scan;
-    slice->blocks = {{scan, scan - 1}};  // refers to a block that the viewer lacks
+    slice->blocks = {{scan, scan - 1}};  // the viewer does not have this block
     viewer.service.Deliver(7, std::move(slice));
     return viewer.topic->wants_recoded();
   };
@@ -254,7 +256,7 @@ TEST(SliceService, WantsNothingRecodedForAViewerOfTheRecording) {
   EXPECT_TRUE(deliver(30));
 }
 
-/// A recording on a disk that does not answer.
+/// A recording on a disk that never answers. Look() returns only when the recording is cancelled.
 class HangingArchive final : public Archive {
  public:
   struct State {
@@ -286,7 +288,8 @@ TEST(SliceService, EndsThoughARecordingIsBeingRead) {
   EXPECT_FALSE(state.gave_up) << "it told the recording to stop";
 }
 
-/// A recording of one slice. It claims to have read so much that a piece ends with the slice.
+/// A recording of one slice. It reports so many bytes for the slice that a piece ends after the
+/// slice.
 class ShortArchive final : public Archive {
  public:
   std::optional<Times> Look(std::string*) override { return Times{kTime_ns, kTime_ns}; }
@@ -320,7 +323,8 @@ TEST(SliceService, TellsWhenAReplayEndsThoughItsLastPieceIsEmpty) {
   })) << said;
 }
 
-/// A recording that cannot be read for `why`, or is empty where there is no reason.
+/// A recording that cannot be read, for the reason `why`. If `why` is empty, the recording can be
+/// read, but contains nothing.
 class ClosedArchive final : public Archive {
  public:
   explicit ClosedArchive(std::atomic<const char*>* why) : why_(*why) {}
@@ -344,7 +348,7 @@ TEST(SliceService, WarnsOnceForEachReasonThatARecordingCannotBeRead) {
   RecordingViewer viewer(std::make_unique<ClosedArchive>(&why),
                          [&](const std::string& text) { warnings.push_back(text); });
   std::string said;
-  unsigned answers = 1;  // to the subscription
+  unsigned answers = 1;  // the first answer is to the subscription
   const auto warnings_of_jumps = [&](const char* reason) {
     why = reason;
     warnings.clear();
@@ -377,7 +381,7 @@ TEST(SliceService, WantsNothingRecodedOnceTheLastViewerLeft) {
   channel.id = 7;
   const auto topic = std::make_shared<Topic>(channel);
   SliceService service{DataRate()};
-  alignas(Client) std::byte nobody[sizeof(Client)];  // used as a key only
+  alignas(Client) std::byte nobody[sizeof(Client)];  // only its address is used, as a key
   auto* client = reinterpret_cast<Client*>(nobody);
   service.Subscribe(client, topic, 1);
   topic->set_wants_recoded(true);

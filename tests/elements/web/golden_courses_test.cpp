@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A golden file holds what foxglovesink advertises, sends and posts in a scripted run.
+// Compares what foxglovesink advertises, sends and posts in scripted runs with a golden file.
 #include "tests/support/golden_course.h"
 
 #include "src/base/crc.h"
@@ -10,13 +10,13 @@ namespace {
 
 constexpr GstClockTime kCapturedAt = 1'500'000'000 * GST_SECOND;
 
-/// A viewer that notes its messages in the course.
+/// A viewer that adds the messages that it receives to the course.
 class NotedViewer {
  public:
   NotedViewer(Course* course, guint64 port)
       : course_(*course), peer_("ws://127.0.0.1:" + std::to_string(port), {"foxglove.sdk.v1"}) {}
 
-  /// Subscribes to a new channel of a topic, and notes the channel's description.
+  /// Subscribes to a topic that has a new channel, and notes the description of the channel.
   void Subscribe(const char* topic, std::uint32_t id) {
     EXPECT_TRUE(WaitUntil([&] { return peer_.Channel(topic) != noted_[topic]; }));
     noted_[topic] = peer_.Channel(topic);
@@ -38,8 +38,8 @@ class NotedViewer {
     peer_.Sync();
     course_.AddLine("answer " + nlohmann::json(peer_.statuses).dump());
   }
-  /// Waits for `messages` messages, and notes all that come before the answer to a request. Answers
-  /// overtake messages that wait.
+  /// Waits for `messages` messages, then sends a request, and notes all messages that arrive before
+  /// its answer. The answer may overtake messages that still wait, so the number is needed.
   void NoteReceived(std::size_t messages) {
     EXPECT_TRUE(WaitUntil([&] { return peer_.received.size() >= messages; }));
     peer_.Sync();
@@ -59,10 +59,11 @@ class NotedViewer {
  private:
   Course& course_;
   Peer peer_;
-  std::map<std::string, std::uint32_t> noted_;  // the last channel of each topic
+  // By topic: the id of the channel that was noted last.
+  std::map<std::string, std::uint32_t> noted_;
 };
 
-/// Caps that the element refuses.
+/// Caps that the element refuses, because their fields are doubles.
 constexpr const char* kCapsOfDoubles =
     "application/x-pointcloud2,fields=(string)\"x:F64:0,y:F64:8,z:F64:16\",point-step=24,height=1,"
     "width=1,is-bigendian=false,is-dense=false";
@@ -87,12 +88,12 @@ gst::BufferPtr CloudWithPose(guint8 value, gsize size) {
   return buffer;
 }
 
-/// The element and its viewer.
+/// The element and a viewer that is connected to it.
 class WebScript {
  public:
   explicit WebScript(Course* course) : c_(*course) {
     c_.Hide("port=.uint.[1-9][0-9]*", "port");
-    c_.Hide(", bytes-sent=.guint64.[0-9]+", "");  // counted after the last message has come
+    c_.Hide(", bytes-sent=.guint64.[0-9]+", "");  // changes after the last message has arrived
   }
   void Begin(const std::string& caps) {
     c_.Begin(caps);
@@ -100,7 +101,7 @@ class WebScript {
     c_.AwaitStat("clients", 1);
   }
   NotedViewer& viewer() { return *viewer_; }
-  /// Pushes a buffer that becomes `messages` messages.
+  /// Pushes a buffer that causes the element to send `messages` messages.
   void Push(const char* what, gst::BufferPtr buffer, std::size_t messages = 1) {
     const GstFlowReturn flow = gst_pad_push(c_.harness()->srcpad, buffer.release());
     viewer_->NoteReceived(messages);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Signed tokens: which tokens are accepted, and what they allow.
+// Tests of signed tokens: which tokens are accepted, and what they allow.
 #include "ext/web/grant.h"
 
 #include <gtest/gtest.h>
@@ -39,7 +39,7 @@ std::string Sign(const std::string& claims, const std::string& header = R"({"alg
 }
 
 TEST(SignedToken, OfRfc7515IsRead) {
-  // The token of appendix A.1, which expired in 2011.
+  // The token in appendix A.1 of RFC 7515. It expired in 2011.
   const std::string key =
       "AyM1SysPpbyDfgZld3umj1qzKObwVMkoqQ-EstJQLr_T-1qS0gZH75aKtMN3Yj0iPS4hcgUuTwjAzZr1Z9CAow";
   std::string usual = key;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Clients that read nothing, send nothing or send nonsense must not disturb the pipeline.
+// Tests of clients that read nothing, send nothing or send nonsense. They must not disturb the
+// pipeline.
 #include <gtest/gtest.h>
 
 #include "src/foxglove/websocket.h"
@@ -11,7 +12,7 @@
 namespace lidar::test {
 namespace {
 
-/// A connection that sends any bytes, and blocks when it reads.
+/// A TCP connection on which the test sends arbitrary bytes. Read() blocks.
 class RawClient {
  public:
   explicit RawClient(Sink* sink, const char* from = "127.0.0.1") {
@@ -35,7 +36,7 @@ class RawClient {
                                      bytes.data(), bytes.size(), nullptr, nullptr,
                                      nullptr) != FALSE;
   }
-  /// Returns at most `size` bytes; empty at the end of the stream.
+  /// Reads at most `size` bytes. Returns an empty string at the end of the stream.
   std::string Read(std::size_t size) {
     std::string bytes(size, 0);
     const gssize n = g_input_stream_read(g_io_stream_get_input_stream(G_IO_STREAM(connection_)),
@@ -43,7 +44,7 @@ class RawClient {
     bytes.resize(n > 0 ? static_cast<std::size_t>(n) : 0);
     return bytes;
   }
-  /// Returns `size` bytes; empty if the stream ends earlier.
+  /// Reads exactly `size` bytes. Returns an empty string if the stream ends before.
   std::string ReadAll(std::size_t size) {
     std::string all;
     while (all.size() < size) {
@@ -75,9 +76,10 @@ class RawClient {
       frame += static_cast<char>(text.size() >> 8);
       frame += static_cast<char>(text.size());
     }
-    Send(frame + std::string(4, '\0') + text);  // a mask of zeros
+    Send(frame + std::string(4, '\0') + text);  // the mask is zero
   }
-  /// Returns the payload of the next frame that is not a ping; empty if the connection ends.
+  /// Returns the payload of the next frame that is not a ping, or an empty string if the connection
+  /// ends.
   std::string ReadFrame() {
     for (;;) {
       const std::string head = ReadAll(2);
@@ -114,12 +116,12 @@ RawClient SubscribedClient(Sink* sink) {
   client.SendText(R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":)" +
                   std::to_string(id) + "}]}");
   client.SendText(R"({"op":"nothing"})");
-  client.ReadFrame();  // this answer comes after the subscription
+  client.ReadFrame();  // the answer shows that the client is subscribed now
   return client;
 }
 
-/// Returns a client that is subscribed to /points and has not read clouds: later ones wait or are
-/// dropped.
+/// Returns a client that is subscribed to /points but has not read any clouds. The sockets' buffers
+/// are full, so further clouds wait or are dropped.
 RawClient StalledClient(Sink* sink) {
   constexpr guint kColumns = 100'000;
   sink->SetCloudCaps(kColumns);
@@ -139,8 +141,9 @@ float XOf(const std::string& frame) {
 }
 
 TEST(SlowClient, GetsTheNewestAndHoldsUpNobody) {
-  constexpr guint kColumns = 100'000;  // 1.6 MB
-  constexpr int kClouds = 16;          // the sink closes a connection that takes nothing for 30 s
+  constexpr guint kColumns = 100'000;  // 1.6 MB for each cloud
+  // Few, because the sink closes a connection that reads nothing for 30 s.
+  constexpr int kClouds = 16;
   Sink sink;
   sink.SetCloudCaps(kColumns);
   sink.PushCloud(1, kColumns);
@@ -151,7 +154,8 @@ TEST(SlowClient, GetsTheNewestAndHoldsUpNobody) {
     ASSERT_EQ(sink.PushCloud(static_cast<float>(i), kColumns), GST_FLOW_OK);
     quick.Next();
   }
-  // The slow client gets what was in the sockets' buffers, and then the last cloud.
+  // The slow client receives the clouds that were in the sockets' buffers, and after them the last
+  // cloud.
   ASSERT_TRUE(WaitUntil([&] { return sink.Stat("messages-dropped") > kClouds / 2; }));
   int got = 0;
   float newest = 0;
@@ -171,7 +175,7 @@ TEST(SlowClient, GetsNothingThatWaitedOnceItUnsubscribed) {
   RawClient slow = StalledClient(&sink);
   slow.SendText(R"({"op":"unsubscribe","subscriptionIds":[1]})");
   slow.SendText(R"({"op":"nothing"})");
-  // The answer comes after the messages in the sockets' buffers.
+  // Skips the messages that were in the sockets' buffers. The answer comes after them.
   std::string frame;
   do {
     frame = slow.ReadFrame();
@@ -258,8 +262,8 @@ struct Named {
   const char* status;
 };
 class HostName : public ::testing::TestWithParam<Named> {};
-/// The owner of a name can let it point to 127.0.0.1, so that a page of that name has the same
-/// origin.
+/// The owner of a DNS name can make it point to 127.0.0.1. For a browser, a page from that name and
+/// this server then have the same origin.
 TEST_P(HostName, OfAnotherSiteReadsNothing) {
   Sink sink;
   for (const std::string request : {"GET /session HTTP/1.1\r\n", "GET / HTTP/1.1\r\n"}) {
@@ -289,7 +293,7 @@ struct Nonsense {
   const char* name;
   bool upgrade;
   std::string bytes;
-  guint64 malformed = 0;  // expected counter of the server
+  guint64 malformed = 0;  // expected value of the server's counter
 };
 
 class NonsenseClient : public ::testing::TestWithParam<Nonsense> {};

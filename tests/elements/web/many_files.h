@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Room for thousands of connections.
+// Raises the limit of open files for tests with thousands of connections.
 #pragma once
 #include <sys/resource.h>
 
@@ -7,7 +7,8 @@
 
 namespace lidar::test {
 
-/// Raises the limit of open files: this process has both ends of its connections.
+/// Raises the limit of open files to `wanted`, because this process has both ends of each
+/// connection. Restores the old limit at the end.
 class ManyFiles {
  public:
   explicit ManyFiles(rlim_t wanted) {

@@ -45,7 +45,7 @@ TEST(Outbox, TheOldestOfAChannelGivesWayAndNoOther) {
 
 TEST(Outbox, DropsWhatContinuesAMessageThatGaveWay) {
   Outbox outbox;
-  EXPECT_EQ(outbox.Push(Of(1, 0, true), 3), 1U);  // the message's beginning is missing
+  EXPECT_EQ(outbox.Push(Of(1, 0, true), 3), 1U);  // the beginning of the message is missing
   for (std::uint32_t i = 1; i <= 3; ++i) EXPECT_EQ(outbox.Push(Of(1, i, i > 1), 3), 0U);
   EXPECT_EQ(outbox.Push(Of(2, 9), 3), 0U);
   EXPECT_EQ(outbox.Push(Of(1, 4, true), 3), 4U);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Viewers that replay recordings which mcapsink has written or still writes.
+// Tests of viewers that replay recordings. mcapsink has written the recordings, or still writes
+// them.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -20,19 +21,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Time of the first slice. Slices are 25 ms apart.
+/// The time of the first slice. Each slice is 25 ms later than the slice before it.
 constexpr std::uint64_t kFirst_ns = 1'700'000'000'000'000'000;
 constexpr std::uint64_t kSlice_ns = 25'000'000;
 
 double Seconds(std::uint64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
-/// An edge that records what it serves.
+/// A fixture with an edge that serves slices and records them.
 class Recordings : public FolderTest {
  protected:
   std::string path() const { return folder_ + "/r%d.mcap"; }
   std::string file() const { return folder_ + "/r0.mcap"; }
   void OpenEdge() { edge_.emplace("sink_0::recording=" + path()); }
-  /// Pushes `n` slices to the edge and to the recorder.
+  /// Pushes the next `n` slices to the edge and to the recorder.
   void Push(guint n) {
     for (guint i = 0; i < n; ++i) {
       gst::BufferPtr buffer = edge_->robot.Next();
@@ -50,13 +51,13 @@ class Recordings : public FolderTest {
       edge_->Push(std::move(buffer));
     }
   }
-  /// Completes the file.
+  /// Ends the recording, which completes the file.
   void EndRecording() { recorder_.reset(); }
 
   std::optional<Edge> edge_;
   Harness recorder_;
   std::uint64_t pushed_ = 0;
-  std::uint64_t of_a_time_ = 1;  // slices with the same time
+  std::uint64_t of_a_time_ = 1;  // number of slices that have the same time
 };
 
 void Replay(Viewer* viewer, guint number, double time) {
@@ -74,13 +75,13 @@ nlohmann::json AwaitStatus(Viewer* viewer, guint number) {
   return viewer->peer.recording;
 }
 
-/// Waits until the replay has read all of its recording.
+/// Waits until the replay has read its whole recording. Returns the number of damaged messages.
 nlohmann::json DamagedAtEnd(Viewer* viewer, guint number) {
   EXPECT_TRUE(WaitUntil([&] { return AwaitStatus(viewer, number)["end"].is_number(); }));
   return viewer->peer.recording["damaged"];
 }
 
-/// A recording of slices that refer to no other slices.
+/// A recording whose slices do not refer to other slices.
 class LargeArchive final : public web::Archive {
  public:
   explicit LargeArchive(std::size_t size) : size_(size) {}
@@ -110,7 +111,8 @@ class LargeArchive final : public web::Archive {
   std::uint64_t next_ = 0;
 };
 
-/// A jump also reads slices before its time, as references, and more of them than it keeps.
+/// A jump also reads the slices before its time, because later slices may refer to them. Here they
+/// are more than the recording keeps.
 TEST(Recording, ThatIsLargeGivesWhatIsWanted) {
   web::Recording recording(std::make_unique<LargeArchive>(100'000));
   const std::uint64_t time = LargeArchive::TimeOf(600);
@@ -155,7 +157,7 @@ TEST_F(Recordings, ArePlayedFromATimeOnInPlaceOfWhatIsNew) {
   const std::uint64_t time = kFirst_ns + 200 * kSlice_ns;
   Replay(&viewer, 3, Seconds(time));
   AwaitStatus(&viewer, 3);
-  // All slices decode, because those that they refer to come before them.
+  // All slices can be decoded, because the slices that they refer to are sent before them.
   std::uint64_t last = 0;
   unsigned at_time = 0;
   while (last < time + 20 * kSlice_ns) {
@@ -197,7 +199,7 @@ TEST_F(Recordings, AreSentAsFastAsTheViewerDrawsThem) {
   Viewer viewer(&edge_->sink);
   Replay(&viewer, 1, Seconds(kFirst_ns + 10 * kSlice_ns));
   for (int i = 0; i < 8; ++i) viewer.Draw();
-  // The viewer stops acknowledging, so the last slices of the recording wait.
+  // The viewer stops acknowledging. Therefore the rest of the recording must wait.
   for (int i = 0; i < 40; ++i) viewer.peer.Sync();
   EXPECT_LE(viewer.peer.received.size(), 512U);
 }
@@ -222,7 +224,7 @@ TEST_F(Recordings, WhoseChunksAreDamagedPlayOnWithoutThem) {
 TEST_F(Recordings, CountTheDamageOfAllTheirPieces) {
   OpenEdge();
   for (int i = 0; i < 600; ++i) {
-    edge_->robot.AskForKey();  // large slices
+    edge_->robot.AskForKey();  // the next slices are large
     Push(1);
   }
   EndRecording();
@@ -286,7 +288,7 @@ TEST_F(Recordings, CostOtherViewersNothing) {
   }
 }
 
-/// Runs a pipeline to its end.
+/// Plays a pipeline until EOS.
 void RunToTheEnd(const std::string& description) {
   Pipeline pipeline(description);
   pipeline.Play();
@@ -336,7 +338,8 @@ TEST_F(Recordings, AreNotThereForAStreamWithoutOne) {
   EXPECT_EQ(SliceReader(viewer.last).replay, 0U);
 }
 
-/// A source of slices and poses that keeps what it sent, as JetStream does for natssrc.
+/// A source of slices and poses. It stores what it sent and answers history queries, as a natssrc
+/// with JetStream does.
 class KeptStream {
  public:
   explicit KeptStream(GstPad* pad) : pad_(pad) {
@@ -360,24 +363,24 @@ class KeptStream {
     buffers_.emplace_back(gst_sample_new(kept, caps.get(), nullptr, nullptr));
     gst_buffer_unref(kept);
   }
-  /// Makes the next answer report `messages` messages as damaged.
+  /// Makes the next answer report `messages` damaged messages.
   void LeaveOut(guint64 messages) {
     const std::lock_guard lock(mutex_);
     left_out_ = messages;
   }
-  /// While the lock exists, the server gives no answer.
+  /// Returns a lock. While the lock exists, history queries get no answer.
   std::unique_lock<std::mutex> Hang() { return std::unique_lock(mutex_); }
-  /// Returns the number of answers without samples, which have only the times.
+  /// Returns the number of answers without samples, which only tell the times of the recording.
   unsigned looks() {
     const std::lock_guard lock(mutex_);
     return looks_;
   }
-  /// Returns the number of answers that began at a time.
+  /// Returns the number of answers to questions that began at a time, not at a position.
   unsigned jumps() {
     const std::lock_guard lock(mutex_);
     return jumps_;
   }
-  /// Makes the server unreachable.
+  /// Makes all further queries fail, as if the server were unreachable.
   void End() {
     const std::lock_guard lock(mutex_);
     is_there_ = false;
@@ -393,7 +396,7 @@ class KeptStream {
     gst::HistoryAnswer answer;
     if (!buffers_.empty()) answer.from = TimeOf(buffers_.front());
     if (!buffers_.empty()) answer.to = TimeOf(buffers_.back());
-    // The answer begins up to a second before the time asked for, as JetStream's does.
+    // As with JetStream, the samples begin up to a second before the requested time.
     const bool by_time = GST_CLOCK_TIME_IS_VALID(question.time);
     jumps_ += by_time ? 1 : 0;
     looks_ += question.most_bytes == 0 ? 1 : 0;
@@ -440,13 +443,13 @@ class Histories : public ::testing::Test {
   std::uint64_t pushed_ = 0;
 };
 
-/// The position after an item of the archive, and the number of slices up to that position.
+/// The position after an item of an archive, and the number of slices before that position.
 struct PlaceInArchive {
   std::uint64_t position = 0;
   std::size_t slices = 0;
 };
 
-/// Reads the archive to its end, and returns the times of the slices.
+/// Reads the archive to its end. Returns the times of the slices.
 std::vector<std::uint64_t> RestOf(web::Archive* archive,
                                   std::vector<PlaceInArchive>* places = nullptr) {
   std::vector<std::uint64_t> times;
@@ -459,7 +462,8 @@ std::vector<std::uint64_t> RestOf(web::Archive* archive,
   return times;
 }
 
-/// Expects that a piece which begins where another one ended has all later slices, each once.
+/// Expects that reading from each position of the archive gives all later slices, each of them
+/// once.
 void ExpectPiecesToFit(web::Archive* archive, guint slices) {
   std::string why;
   const auto times = archive->Look(&why);
@@ -527,7 +531,7 @@ TEST_F(Recordings, MissNoSliceOfATimeBetweenTwoPieces) {
   constexpr std::size_t kSlices = 600;
   of_a_time_ = 8;
   for (std::size_t i = 0; i < kSlices; ++i) {
-    edge_->robot.AskForKey();  // large slices
+    edge_->robot.AskForKey();  // the next slices are large
     Push(1);
   }
   EndRecording();
@@ -594,7 +598,8 @@ TEST_F(Histories, WhoseServerIsGoneSaySo) {
   viewer.Draw();
 }
 
-/// Otherwise a viewer could fill the memory with requests, each of a new subscription.
+/// If the old subscription were still read for, a viewer could fill the memory with requests, each
+/// for a new subscription.
 TEST_F(Histories, AreNotReadForASubscriptionThatAnotherReplaced) {
   Push(40);
   Viewer viewer(&edge_.sink);
@@ -622,7 +627,7 @@ TEST_F(Recordings, SurviveAViewerThatJumpsWithoutEnd) {
     Replay(&viewer, i, i % 3 == 0 ? 1e10 : Seconds(kFirst_ns + (i % 400) * kSlice_ns));
   AwaitStatus(&viewer, 2000);
   Peer other(&edge_->sink);
-  other.Sync();  // the server still serves other viewers
+  other.Sync();  // an answer shows that the server still serves other viewers
   EXPECT_FALSE(viewer.peer.closed());
 }
 

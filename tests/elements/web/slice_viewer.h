@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A robot that sends slices, an edge that serves them, and a page that decodes them.
+// A robot that sends slices, an edge that serves them, and a viewer that decodes them as the web
+// page does.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -11,20 +12,20 @@
 
 namespace lidar::test {
 
-constexpr guint kScanSlices = 4;  // a scan
+constexpr guint kScanSlices = 4;  // slices per scan
 
 inline gst::CapsPtr CapsOf(GstHarness* harness) {
   return gst::CapsPtr(gst_pad_get_current_caps(harness->sinkpad));
 }
 
-/// Slices of clouds of a sensor that stands still. All robots share them, because rendering them
-/// takes longer than anything else that robots do.
+/// Slices of clouds from a sensor that does not move. All robots share these slices, because
+/// rendering them takes longer than everything else in a test.
 class StillClouds {
  public:
   static constexpr std::size_t kSlices = 700;
 
   static const StillClouds& Get() {
-    // Outlives GStreamer.
+    // Never deleted, so that it is not destroyed after GStreamer was deinitialised.
     static const auto* const clouds = new StillClouds;
     return *clouds;
   }
@@ -46,8 +47,8 @@ class StillClouds {
   gst::CapsPtr caps_;
 };
 
-/// Codes the slices of a sensor that stands still. Each slice is acknowledged at once, so that the
-/// coder refers to it.
+/// Codes the slices of a sensor that does not move. Each slice is acknowledged at once, so that
+/// later slices can refer to it.
 class Robot {
  public:
   explicit Robot(const std::string& options = "effort=2")
@@ -68,7 +69,7 @@ class Robot {
     return slice;
   }
   gst::CapsPtr caps() { return CapsOf(coder_.get()); }
-  /// Makes the next slices refer to no others.
+  /// Requests a key unit, so that the next slices refer to no earlier slices.
   void AskForKey() {
     gst_harness_push_upstream_event(
         coder_.get(), gst_event_new_custom(GST_EVENT_CUSTOM_UPSTREAM,
@@ -80,7 +81,7 @@ class Robot {
   std::size_t sent_ = 0;
 };
 
-/// The header of a slice, as the page reads it.
+/// Parses the header of a slice message, as the web page does.
 struct SliceReader {
   explicit SliceReader(const Received& received)
       : in(reinterpret_cast<const std::uint8_t*>(received.payload.data()),
@@ -107,7 +108,7 @@ struct SliceReader {
   ByteView slice;
 };
 
-/// A page that decodes slices, and acknowledges them.
+/// A viewer that decodes slices and acknowledges them, as the web page does.
 class Viewer {
  public:
   explicit Viewer(Sink* sink) : peer(sink) {
@@ -123,20 +124,21 @@ class Viewer {
         {*fields, fields->MinimumStep()}, static_cast<std::uint32_t>(model->beams.size()), *model};
     decoder_.emplace(format_, 1U << 20);
   }
-  /// Takes and decodes the next slice. Poses of a replay come before their slice.
+  /// Receives the next slice and decodes it. In a replay, the poses of a slice arrive before the
+  /// slice.
   void Draw(bool acknowledge = true) {
     for (last = peer.Next(); (SliceReader(last).flags & 2) != 0; last = peer.Next())
       poses.push_back(last);
     const SliceReader slice(last);
     EXPECT_TRUE(decoder_->Decode(slice.slice)) << slice.scan << "." << slice.index;
-    // The server sends the robot's slice unchanged, or coded anew.
+    // The server sends the robot's slice unchanged, or recodes it.
     EXPECT_EQ(slice.first_column, slice.index * 512 / slice.count);
     if (slice.flags == 0) ++own;
     if (slice.flags == 1) ++recoded;
     if (acknowledge) Acknowledge(slice.scan, slice.index);
   }
-  /// Returns once the server has the acknowledgement. Otherwise, on a slow machine, the next scan
-  /// could come before the acknowledgement, and the viewer would not get that scan.
+  /// Acknowledges a slice, and waits until the server has the acknowledgement. If the next scan
+  /// came earlier, the server would skip it for this viewer.
   void Acknowledge(std::uint32_t scan, std::uint32_t index, unsigned subscription = 9) {
     peer.SendText(nlohmann::json{
         {"op", "drawn"}, {"subscriptionId", subscription}, {"scan", scan}, {"slice", index}}

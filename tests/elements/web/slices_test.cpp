@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Coded slices: sent unchanged to viewers, decoded for other clients, coded anew for late viewers.
+// Tests of coded slices: sent unchanged to viewers, decoded for other clients, and recoded for
+// viewers that connect late.
 #include <gtest/gtest.h>
 
 #include "src/codec/slice_links.h"
@@ -32,7 +33,7 @@ TEST(Slices, GoToAViewerAsTheyAre) {
     }
     bytes += pushed.size();
   }
-  // The viewer came after the very first slice.
+  // The viewer subscribed after the first slice, so it did not get that slice.
   EXPECT_GE(viewer.own, 10 * kScanSlices - 10 - 1);
   EXPECT_LT(edge.sink.Stat("bytes-sent"), bytes * 11 / 10 + 8192);
   EXPECT_EQ(edge.sink.Stat("points-sent"), 0U);
@@ -86,7 +87,7 @@ TEST(Slices, OfPointsBringTheirFurtherFields) {
     std::uint32_t range_mm = 0;
     std::memcpy(p, &points[at], sizeof p);
     std::memcpy(&range_mm, &points[at + field.Number(2)], sizeof range_mm);
-    // Beams begin away from the sensor's middle.
+    // The beams begin at some distance from the centre of the sensor.
     ASSERT_NEAR(std::hypot(p[0], p[1], p[2]), 1e-3 * range_mm, 0.06);
   }
 }
@@ -123,7 +124,7 @@ TEST(Slices, OfNewestScansGoToAViewerThatFallsBehind) {
     edge.Push();
     viewer.Draw(false);
   }
-  viewer.Acknowledge(1, kScanSlices - 1, 8);  // of another topic
+  viewer.Acknowledge(1, kScanSlices - 1, 8);  // this subscription is not the viewer's
   edge.PushScans(19);
   const std::uint32_t newest = 20;
   viewer.peer.Sync();
@@ -142,7 +143,7 @@ TEST(Slices, TakeNoMoreThanMaxBitrate) {
     edge.Push();
     viewer.Draw();
   }
-  // The first scan has used up the bit budget of hours.
+  // With this bitrate, the first scan has used up the budget of many hours.
   edge.PushScans(5);
   viewer.peer.Sync();
   EXPECT_TRUE(viewer.peer.received.empty());
@@ -180,7 +181,7 @@ TEST(Slices, GoBeforeTheCameraOfAViewerThatFallsBehind) {
   viewer.Acknowledge(0, 2);
   viewer.peer.Sync();
   viewer.peer.received.clear();
-  push_frame(false);  // continues a frame that was left out
+  push_frame(false);  // continues the frame that was dropped
   push_frame();
   const Received next = viewer.peer.Next();
   EXPECT_EQ(next.subscription, 5U);

@@ -9,7 +9,7 @@
 
 namespace {
 
-/// An element with a property `stats` that the test sets.
+/// An element whose property `stats` the test sets.
 struct TalkingElement {
   GstElement parent;
   GstStructure* stats;
@@ -83,13 +83,13 @@ TEST(Statistics, SumUpWhatElementsTellInTheirUnits) {
   EXPECT_LT(message["timestamp"]["nsec"].get<std::uint64_t>(), 1'000'000'000U);
 }
 
-/// Returns the statistics of one element that has `stats`.
+/// Returns the statistics message of a single element whose property `stats` is `stats`.
 nlohmann::json MessageOf(const std::string& stats) {
   const gst::ElementPtr alone(GST_ELEMENT(gst_object_ref_sink(Talking("a", stats.c_str()))));
   return nlohmann::json::parse(StatisticsOf(alone.get()));
 }
 
-/// `first`, and `zeros` zeros.
+/// Returns statistics with a covariance that consists of the number `first` and `zeros` zeros.
 std::string StatsWithCovariance(const std::string& first, int zeros) {
   std::string stats = "s,scans-degenerate=(guint64)0,covariance=(double)<" + first;
   for (int i = 0; i < zeros; ++i) stats += ",0";
@@ -102,7 +102,7 @@ TEST(Statistics, HaveNothingOfASenderThatHasReportedNothing) {
   EXPECT_TRUE(MessageOf(rtt + "1;").contains("rtt"));
 }
 
-/// Paths of Foxglove's plots have no dashes.
+/// A path in a Foxglove plot cannot contain dashes.
 TEST(Statistics, HaveNoDashInTheNameOfAFieldHoweverDeep) {
   GValue links = G_VALUE_INIT;
   gst_value_array_init(&links, 1);
@@ -145,7 +145,7 @@ TEST(Statistics, OfAnElementWithoutAPipelineAreItsOwn) {
   const gst::ElementPtr alone(GST_ELEMENT(gst_object_ref_sink(Talking("a", "s,rtt=(guint64)1;"))));
   const auto message = nlohmann::json::parse(StatisticsOf(alone.get()));
   EXPECT_EQ(message["elements"].size(), 1U);
-  EXPECT_FALSE(message.contains("rtt"));  // the element is no sender
+  EXPECT_FALSE(message.contains("rtt"));  // the element is not a sender
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// HTTPS and WSS that the element itself serves.
+// Tests of HTTPS and WSS, which the element itself serves.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ class Tls : public FolderTest {
     if (!Make("robot")) GTEST_SKIP() << "openssl is not installed";
   }
 
-  /// Makes a certificate for `name`, which replaces the previous certificate.
+  /// Makes a certificate for `name`. It replaces the previous certificate.
   bool Make(const std::string& name, const char* days = "2") {
     const std::string make =
         "cd " + folder_ +
@@ -33,7 +33,7 @@ class Tls : public FolderTest {
         name + " -days " + days + " 2>/dev/null && mv new-key.pem key.pem && mv new.pem cert.pem";
     return std::system(make.c_str()) == 0;
   }
-  /// Makes a certificate that was valid in January 2020.
+  /// Makes a certificate that was valid only in January 2020.
   bool MakeOld() {
     const std::string make =
         "cd " + folder_ +
@@ -140,7 +140,7 @@ TEST_F(Tls, KeepsItsCertificateAndSaysOnceWhyARenewalIsNone) {
   }
 }
 
-/// Connects from `address`, which may be any address of this machine, such as 127.0.0.7.
+/// Connects from the local address `address`, for example 127.0.0.7.
 GSocketConnection* ConnectFrom(const std::string& address, guint port) {
   GSocketClient* client = g_socket_client_new();
   GSocketAddress* local = g_inet_socket_address_new_from_string(address.c_str(), 0);
@@ -165,9 +165,10 @@ TEST_F(Tls, LetsAThousandHalfHandshakesHoldUpTheirOwn) {
                           nullptr, nullptr);
     silent.push_back(connection);
   }
-  // A handshake has a second while others wait, and a busy machine may take that long.
+  // While other connections wait, a handshake must finish within a second. A busy machine may need
+  // longer, so the request is repeated.
   EXPECT_TRUE(Eventually([&] { return HttpGet(sink.Url("https")).status == 200U; }));
-  // The server counts once a second.
+  // The server updates this counter once per second.
   const auto evicted = static_cast<guint64>(std::max(0, count - 20 * 32) / 2);
   EXPECT_TRUE(Eventually([&] { return sink.Stat("connections-evicted") >= evicted; }));
   for (GSocketConnection* connection : silent) g_object_unref(connection);
@@ -180,7 +181,7 @@ TEST_F(Tls, LetsSilentConnectionsHoldUpNobody) {
   for (int i = 0; i < 20; ++i) {
     silent.push_back(g_socket_client_connect_to_host(
         client, "127.0.0.1", static_cast<guint16>(sink.Stat("port")), nullptr, nullptr));
-    // The first byte of a handshake that never continues.
+    // Sends the first byte of a handshake, and nothing more.
     if (i < 2)
       g_output_stream_write(g_io_stream_get_output_stream(G_IO_STREAM(silent.back())), "\x16", 1,
                             nullptr, nullptr);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Video of a camera: frames go out from a key frame on, with the times of their capture.
+// Tests of a camera's video: a client gets frames from a key frame on, with the times at which they
+// were captured.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -78,7 +79,8 @@ TEST(Camera, WithoutCaptureTimesHasThatOfItsTimestamp) {
   Peer peer(&sink);
   peer.Subscribe("/camera", 4);
   const auto unix_now = [] { return static_cast<guint64>(g_get_real_time()) * GST_USECOND; };
-  // The element of the pad does the work; a pipeline gives both the same base time.
+  // The input is a child element, and it handles the buffers. In a pipeline both would have the
+  // same base time.
   auto* input = GST_ELEMENT(GST_BIN_CHILDREN(sink.element())->data);
   constexpr GstClockTime kSecond = GST_SECOND;
   gst_harness_set_time(sink.harness(), 100 * kSecond);
@@ -90,7 +92,7 @@ TEST(Camera, WithoutCaptureTimesHasThatOfItsTimestamp) {
       const guint64 before = unix_now();
       gst_harness_push(sink.harness(), buffer.release());
       const guint64 shown = Frame(peer.Next()).unix_ns;
-      // A timestamp in the future becomes the current time.
+      // If the timestamp is in the future, the current time replaces it.
       const guint64 age = (100 - std::min(base + pts, 100U)) * kSecond;
       EXPECT_GE(shown + age, before);
       EXPECT_LE(shown + age, unix_now());
@@ -143,7 +145,7 @@ TEST_P(StockCoder, IsShown) {
   }
   gst_element_set_state(pipeline.get(), GST_STATE_NULL);
 }
-/// Returns true for Annex B with parameter sets before the picture.
+/// Returns true if `frame` is in Annex B format and has its parameter sets before the picture.
 bool BeginsWithSps(const std::string& frame) {
   const std::size_t sps = frame.find(std::string("\0\0\1\x67", 4));
   return sps != std::string::npos && sps < frame.find(std::string("\0\0\1\x65", 4));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The element under test, and a client of its server by libsoup.
+// The element under test, and a client of its server that is based on libsoup.
 #pragma once
 #include <libsoup/soup.h>
 
@@ -20,7 +20,7 @@
 
 namespace lidar::test {
 
-/// foxglovesink with one pad, on a port that is free.
+/// A foxglovesink with one pad, on a free port.
 class Sink {
  public:
   explicit Sink(const std::string& properties = "") {
@@ -43,7 +43,8 @@ class Sink {
   std::string Url(const char* scheme, const std::string& path = "/") {
     return std::string(scheme) + "://127.0.0.1:" + std::to_string(Stat("port")) + path;
   }
-  /// Pushes `columns` points of 16 bytes on a line, the first at x = `first`.
+  /// Pushes a cloud of `columns` points on a line. Each point has 16 bytes, and the first point has
+  /// x = `first`.
   GstFlowReturn PushCloud(float first, guint columns = 4, GstClockTime capture_time = 0) {
     std::vector<float> points;
     for (guint i = 0; i < columns; ++i)
@@ -65,7 +66,7 @@ class Sink {
   Harness harness_;
 };
 
-/// Runs the default context until `done` returns true. Returns false if that takes too long.
+/// Runs the default main context until `done` returns true. Returns false if that takes too long.
 inline bool WaitUntil(const std::function<bool()>& done) {
   const gint64 until = g_get_monotonic_time() + kPatience_us;
   while (!done()) {
@@ -75,14 +76,14 @@ inline bool WaitUntil(const std::function<bool()>& done) {
   return true;
 }
 
-/// Accepts any certificate: those of tests are self-signed.
+/// Accepts any certificate, because the certificates of tests are self-signed.
 inline void AcceptCertificates(SoupMessage* message) {
   g_signal_connect(message, "accept-certificate",
                    G_CALLBACK(+[](SoupMessage*, GTlsCertificate*, int, gpointer) { return TRUE; }),
                    nullptr);
 }
 
-/// An answer over HTTP.
+/// An answer to an HTTP request.
 struct HttpAnswer {
   guint status = 0;
   std::string type;
@@ -116,7 +117,7 @@ inline HttpAnswer HttpGet(const std::string& url, const char* method = "GET",
       },
       &call);
   EXPECT_TRUE(WaitUntil([&] { return done; }));
-  if (!done) soup_session_abort(session);  // a late answer would write to freed memory
+  if (!done) soup_session_abort(session);  // otherwise a late answer would write to freed memory
   while (!done) g_main_context_iteration(nullptr, TRUE);
   HttpAnswer answer;
   answer.status = soup_message_get_status(message);
@@ -138,14 +139,14 @@ inline HttpAnswer HttpGet(const std::string& url, const char* method = "GET",
   return answer;
 }
 
-/// A message of a channel.
+/// A message that a client received on a channel.
 struct Received {
   std::uint32_t subscription = 0;
   std::uint64_t unix_ns = 0;
   std::string payload;
 };
 
-/// A client in the default context, which WaitUntil runs.
+/// A client that runs in the default main context. WaitUntil() runs this context.
 class Peer {
  public:
   Peer(const std::string& url, std::vector<const char*> protocols, const char* origin = nullptr)
@@ -193,18 +194,20 @@ class Peer {
   void SendText(const std::string& text) {
     soup_websocket_connection_send_text(connection_, text.c_str());
   }
-  /// Returns the id of a channel once it is advertised; 0 if that never happens.
+  /// Waits until the channel of `topic` is advertised. Returns the channel's id, or 0 if that takes
+  /// too long.
   std::uint32_t Channel(const std::string& topic) {
     EXPECT_TRUE(WaitUntil([&] { return channels.count(topic) > 0; })) << topic;
     return channels.count(topic) > 0 ? channels[topic]["id"].get<std::uint32_t>() : 0;
   }
-  /// Returns once the server has subscribed the client: it answers requests in order.
+  /// Subscribes to `topic`, and returns once the server has handled the request.
   void Subscribe(const std::string& topic, std::uint32_t id) {
     const nlohmann::json item = {{"id", id}, {"channelId", Channel(topic)}};
     SendText(nlohmann::json{{"op", "subscribe"}, {"subscriptions", {item}}}.dump());
     Sync();
   }
-  /// Returns once the server has answered an unknown request, and so all earlier requests.
+  /// Sends an unknown request and waits for its answer. The server answers requests in order, so
+  /// all earlier requests are handled then.
   void Sync() {
     const auto answers = [this] {
       return std::count(statuses.begin(), statuses.end(),
@@ -225,7 +228,7 @@ class Peer {
   nlohmann::json server_info;
   std::map<std::string, nlohmann::json> channels;  // by topic
   std::vector<std::string> statuses;
-  nlohmann::json recording;  // the last message about a recording
+  nlohmann::json recording;  // the last message about the recording
   std::deque<Received> received;
 
  private:
