@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A TCP server that answers every request as the test chooses, but as no sensor would.
+// A TCP server that answers every request as the test says, and not as a sensor would.
 #pragma once
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
@@ -16,15 +16,15 @@
 
 namespace lidar::test {
 
-/// A connection of one client.
+/// The server's end of a connection to one client.
 class Exchange {
  public:
   Exchange(int fd, const std::atomic<bool>& stopping) : fd_(fd), stopping_(stopping) {}
-  /// Returns false once the client has left or the test is over.
+  /// Sends `text`. Returns false if the client has closed the connection or the test is over.
   bool Send(const std::string& text) const {
     return !stopping_ && send(fd_, text.data(), text.size(), MSG_NOSIGNAL) > 0;
   }
-  /// Sends an answer of status 200 with this body.
+  /// Sends an answer with status 200 and this body.
   bool Answer(const std::string& body) const {
     std::string text =
         "HTTP/1.1 200 OK\r\nContent-Length: " + std::to_string(body.size()) + "\r\n\r\n" + body;
@@ -35,7 +35,7 @@ class Exchange {
     }
     return true;
   }
-  /// Waits. Returns false once the client has left or the test is over.
+  /// Waits for `time`. Returns false if the client has closed the connection or the test is over.
   bool Wait(std::chrono::milliseconds time) const {
     std::this_thread::sleep_for(time);
     char next = 0;
@@ -51,7 +51,7 @@ class HostileServer {
  public:
   using Behaviour = std::function<void(const Exchange&)>;
 
-  /// Calls `behave` for each request, and closes the connection when it returns.
+  /// Calls `behave` for each request. Closes the connection when `behave` returns.
   explicit HostileServer(Behaviour behave)
       : behave_(std::move(behave)), listener_(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
     sockaddr_in address{};
@@ -85,7 +85,7 @@ class HostileServer {
       if (!Readable(listener_)) continue;
       const int fd = accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC);
       if (fd < 0) continue;
-      const timeval patience{0, 100'000};  // limit of a send to a client that does not read
+      const timeval patience{0, 100'000};  // maximum time of a send to a client that does not read
       setsockopt(fd, SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
       char request[4096];
       while (!stopping_ && !Readable(fd)) continue;

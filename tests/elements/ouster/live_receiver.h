@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// ouster_src on a sensor of this machine, with its buffers and messages.
+// An ouster_src that receives from a sensor on this machine, and its buffers and messages.
 #pragma once
 #include <functional>
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace lidar::test {
 
-/// ouster_src in a harness, with its bus.
+/// An ouster_src in a harness, and the messages on its bus.
 class Receiver {
  public:
   Receiver(const std::string& host, const std::string& properties)
@@ -32,12 +32,12 @@ class Receiver {
   }
 
   void SetState(GstState state) { gst_element_set_state(harness_->element, state); }
-  /// Returns the next buffer; null if none comes.
+  /// Returns the next buffer, or null if none arrives in time.
   gst::BufferPtr Pull() { return Pull(g_get_monotonic_time() + kPatience_us); }
   void Drain() {
     while (gst_harness_buffers_in_queue(harness_.get()) > 0) Pull();
   }
-  /// Pulls buffers until `wanted` returns true for one. Returns false if that takes too long.
+  /// Pulls buffers until `wanted` returns true for a buffer. Returns false if that takes too long.
   bool PullUntil(const std::function<bool(GstBuffer*)>& wanted) {
     const gint64 end = g_get_monotonic_time() + kPatience_us;
     while (const gst::BufferPtr buffer = Pull(end))
@@ -50,7 +50,7 @@ class Receiver {
     EXPECT_TRUE(info);
     return info.value_or(gst::CloudInfo{});
   }
-  /// Returns the next element message `name`; null at an error.
+  /// Waits for the next element message `name`. Returns null if the element posts an error.
   gst::MessagePtr Await(const char* name) {
     for (;;) {
       gst::MessagePtr message = bus_->Wait(GST_MESSAGE_ELEMENT | GST_MESSAGE_ERROR);
@@ -67,7 +67,8 @@ class Receiver {
     } while ((is != FALSE) != connected);
     return true;
   }
-  /// Returns true once the element has posted that its latency changed.
+  /// Waits until the element has posted that its latency changed. Returns false if that takes too
+  /// long.
   bool AwaitLatency() { return bus_->Wait(GST_MESSAGE_LATENCY) != nullptr; }
   bool AwaitWarning(const std::string& part) {
     for (;;) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A golden file holds what a live ouster_src outputs and posts in a scripted run.
+// Compares what a live ouster_src outputs and posts in a scripted run with a golden file.
 #include <netinet/in.h>
 #include <sys/socket.h>
 
@@ -13,7 +13,7 @@
 namespace lidar::test {
 namespace {
 
-/// A sensor of 32 beams: 64 packets of 16 columns a scan.
+/// A sensor with 32 beams. A scan has 64 packets of 16 columns each.
 class PacketSensor {
  public:
   using Packet = std::vector<std::uint8_t>;
@@ -30,7 +30,8 @@ class PacketSensor {
     packets_ = LoadPackets(capture, metadata_);
   }
 
-  /// Returns packet `number` as the sensor sends it `scan` scans later.
+  /// Returns packet `number` of the captured scan, changed so that it belongs to the scan `scan`
+  /// periods later.
   Packet PacketOf(std::size_t number, guint scan) const {
     constexpr std::size_t kColumns = 16, kHeader = 32, kPeriodNs = 100'000'000;
     Packet packet = packets_[number];
@@ -45,8 +46,8 @@ class PacketSensor {
     }
     return packet;
   }
-  /// Sends packets of a scan, but not those from `lost` up to `found`. Waits after each slice, so
-  /// that the socket's buffer does not overflow.
+  /// Sends the packets of a scan, except for those from `lost` up to but not including `found`.
+  /// Waits after each slice, so that the buffer of the socket does not overflow.
   void Send(guint scan, std::size_t from, std::size_t to, std::size_t lost = 0,
             std::size_t found = 0) {
     for (std::size_t i = from; i < to; ++i) {
@@ -65,7 +66,7 @@ class PacketSensor {
     ++sent_;
   }
   void SendOther(const Packet& packet) { lidar_.Send(packet); }
-  /// Sends packets of a wrong size.
+  /// Sends `count` packets whose size is wrong.
   void SendShort(guint64 count) {
     for (guint64 i = 0; i < count; ++i) SendOther(Packet(1'000));
     short_ += count;
@@ -89,8 +90,8 @@ class PacketSensor {
   guint64 short_ = 0;
 };
 
-/// Switches off the kernel's arrival times on the sockets of `port`: they are of the real clock,
-/// but all other times are of the test clock.
+/// Switches off the kernel's arrival times on the sockets of `port`. These times come from the real
+/// clock, but all other times of the test come from the test clock.
 void LeaveOutArrivals(guint port) {
   for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
     const int fd = std::stoi(entry.path().filename());
@@ -109,11 +110,13 @@ void LiveCourse(Course& c) {
   guint imu_port = 0;
   g_object_get(c.element(), "lidar-port", &port, "imu-port", &imu_port, nullptr);
   UseTestClock(c.harness());
-  GstClockTime now = kClockStart + 3600 * GST_SECOND;  // packets before running time 0 are dropped
+  // Later than running time 0, because earlier packets are dropped.
+  GstClockTime now = kClockStart + 3600 * GST_SECOND;
   gst_harness_set_time(c.harness(), now);
-  // Times of arrival differ between runs.
+  // Arrival times differ between runs.
   c.Hide("buffer at [0-9]+", "buffer");
-  c.Hide("message latency ", "");  // comes from another thread than events, so its place varies
+  // Another thread posts this message, so its position among the events varies.
+  c.Hide("message latency ", "");
   c.Hide("position [0-9]+", "position");
   c.Hide(", clock-jumps=.guint64.[0-9]+", "");
   c.Hide("captured (at )?-?[0-9]+", "captured");
@@ -128,7 +131,7 @@ void LiveCourse(Course& c) {
     LeaveOutArrivals(port);
     c.Await(what, "event stream-start");
   };
-  // Time passes only here, so a busy machine that delays the test causes no silence.
+  // The clock advances only here. Therefore a busy machine that delays the test causes no silence.
   const auto be_silent = [&](const char* line) {
     sensor.AwaitTaken();
     EXPECT_TRUE(Eventually([&] {
@@ -177,10 +180,10 @@ void LiveCourse(Course& c) {
   c.Set("reconnect", "false");
   play("play once more");
   sensor.SendScan("a scan", 9);
-  be_silent("event eos");  // comes after both errors
+  be_silent("event eos");  // EOS comes after both errors
   c.Stop();
   play("without a sensor");
-  be_silent("event eos");  // comes after both errors
+  be_silent("event eos");  // EOS comes after both errors
 }
 
 const std::size_t kOusterCourses = AddGoldenCourses(

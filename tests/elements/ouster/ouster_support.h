@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Helpers of the tests of ouster_src: captures, pipelines that end, and a UDP sender.
+// Functions for the tests of ouster_src: captures, pipelines that run to their end, and a UDP
+// sender.
 #pragma once
 #include <gio/gio.h>
 #include <gst/gst.h>
@@ -22,11 +23,11 @@
 
 namespace lidar::test {
 
-// A capture of three scans.
+// A capture with three scans.
 inline constexpr const char* kThreeScans = "OS-1-128_v2.3.0_1024x10_lb_n3.pcap";
 inline constexpr const char* kThreeScansMetadata = "OS-1-128_v2.3.0_1024x10.json";
 
-/// Returns the capture times of a file's datagrams, in order.
+/// Returns the capture times of the datagrams of a file, in order.
 inline std::vector<Time> TimesOf(const std::string& name) {
   std::string error;
   auto reader = ouster::PcapReader::Open(DataPath(name), &error);
@@ -37,10 +38,10 @@ inline std::vector<Time> TimesOf(const std::string& name) {
   return times;
 }
 
-/// Sends to a port of this machine.
+/// Sends datagrams to a port of this machine.
 class UdpSender {
  public:
-  /// An empty `from` leaves the address to the kernel.
+  /// Opens the socket. If `from` is empty, the kernel chooses the source address.
   explicit UdpSender(guint16 port, const char* from = "")
       : socket_(g_socket_new(G_SOCKET_FAMILY_IPV4, G_SOCKET_TYPE_DATAGRAM, G_SOCKET_PROTOCOL_UDP,
                              nullptr)),
@@ -69,16 +70,16 @@ class UdpSender {
 };
 
 struct Ending {
-  std::string error;     // with its details; "" after EOS
-  std::string warnings;  // all warnings in one text
+  std::string error;     // error and its details; empty after EOS
+  std::string warnings;  // the texts of all warnings
 };
 
-/// Returns text and details of an error or a warning.
+/// Returns the text and the details of an error or warning message.
 inline std::string TextOf(GstMessage* message) {
   return MessageText(message) + "\n" + MessageDetails(message);
 }
 
-/// Runs a pipeline to its end.
+/// Runs a pipeline until EOS or an error.
 inline Ending Run(const std::string& description) {
   GError* raw = nullptr;
   const gst::ElementPtr pipeline(gst_parse_launch(description.c_str(), &raw));
@@ -102,7 +103,7 @@ inline Ending Run(const std::string& description) {
   return ending;
 }
 
-/// Runs a pipeline. Returns the text of its error, or "" after EOS.
+/// Runs a pipeline until its end. Returns the text of its error, or an empty string after EOS.
 inline std::string RunToEnd(const std::string& description) { return Run(description).error; }
 
 }  // namespace lidar::test

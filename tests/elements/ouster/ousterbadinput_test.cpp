@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Wrong captures and metadata give a clear error. Wrong packets are counted and skipped.
+// Tests of wrong captures, wrong metadata and wrong packets. Wrong captures and metadata cause a
+// clear error. Wrong packets are counted and skipped.
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -14,7 +15,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// A file of the test's own.
+/// A file that exists during the lifetime of the object.
 class TempFile {
  public:
   TempFile(const std::string& name, const std::string& bytes)
@@ -35,8 +36,8 @@ Ending RunFile(const std::string& pcap, const std::string& metadata) {
 }
 
 struct BadInput {
-  const char* properties;  // @ stands for the folder of the data
-  const char* error;       // part of the message
+  const char* properties;  // @ is replaced by the folder of the test data
+  const char* error;       // part of the expected message
 };
 class OusterBadInput : public ::testing::TestWithParam<BadInput> {};
 TEST_P(OusterBadInput, IsAClearError) {
@@ -82,7 +83,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"location=@crc_test.pcap min-range=3 max-range=3", "max-range"},
         BadInput{"location=@crc_test.pcap min-range=9 max-range=3", "max-range"}));
 
-/// Returns the header of a pcap file with link type `link`.
+/// Returns the header of a pcap file with the link type `link`.
 std::string PcapHeader(std::uint32_t link) {
   std::vector<std::uint8_t> bytes;
   ByteWriter w(&bytes);
@@ -94,7 +95,7 @@ std::string PcapHeader(std::uint32_t link) {
   return {bytes.begin(), bytes.end()};
 }
 
-/// Returns the frames of a pcap file as pcapng, with times in microseconds.
+/// Converts a pcap file to pcapng, with timestamps in microseconds.
 std::string ToPcapng(const std::string& pcap) {
   std::vector<std::uint8_t> out;
   ByteWriter w(&out);
@@ -199,7 +200,7 @@ TEST(OusterCapture, OfAnotherInitIdIsReadWithAWarning) {
 struct Hostile {
   const char* pointer;
   const char* value;  // JSON, or invalid text
-  const char* error;  // part of the message
+  const char* error;  // part of the expected message
 };
 class OusterHostileMetadata : public ::testing::TestWithParam<Hostile> {};
 TEST_P(OusterHostileMetadata, IsAClearError) {

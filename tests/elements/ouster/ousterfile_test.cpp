@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// ouster_src on captures.
+// Tests of ouster_src that reads captures.
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -105,7 +105,7 @@ TEST(OusterFile, LoopsWithTimesThatGoOn) {
 
 TEST(OusterFile, LoopsWithoutAPauseAndWithoutAnOverlap) {
   const Harness h = FromFile(kThreeScans, kThreeScansMetadata, "loop=true");
-  std::vector<GstClockTime> starts;  // of scans
+  std::vector<GstClockTime> starts;  // of the scans
   while (starts.size() < 7) {
     const BufferPtr buffer(gst_harness_pull(h.get()));
     ASSERT_TRUE(buffer);
@@ -142,7 +142,7 @@ TEST(OusterFile, LivePlaybackWaitsForTheTimeOfEachPacket) {
   UseTestClock(h.get());
   const auto started = static_cast<GstClockTime>(g_get_real_time()) * GST_USECOND;
   SetPlaying(h.get());
-  // The capture's packets are about 1.6 ms apart; a slice has 8 of them.
+  // The packets of the capture are about 1.6 ms apart, and a slice has 8 packets.
   for (int i = 0; i < 7; ++i) {
     EXPECT_EQ(gst_harness_buffers_received(h.get()), 0U) << i;
     ASSERT_TRUE(gst_harness_crank_single_clock_wait(h.get()));
@@ -165,7 +165,8 @@ TEST(OusterFile, CaptureTimesAfterAPauseAreThoseOfTheDay) {
                                       .c_str()));
   UseTestClock(h.get());
   SetPlaying(h.get());
-  // The test clock stands still during the pause, as a pipeline's running time does.
+  // The test clock does not advance during the pause, just as the running time of a pipeline does
+  // not.
   const std::vector<Time> times = TimesOf(kThreeScans);
   const auto second = kClockStart + static_cast<GstClockTime>((times[1] - times[0]).count());
   ASSERT_TRUE(gst_harness_crank_single_clock_wait(h.get()));
@@ -180,7 +181,7 @@ TEST(OusterFile, CaptureTimesAfterAPauseAreThoseOfTheDay) {
   EXPECT_GE(gst_lidar_buffer_get_capture_time(next.get()), resumed + GST_BUFFER_PTS(next.get()));
 }
 
-/// A round begins one packet interval after the last packet of the previous round.
+/// Each round begins one packet interval after the last packet of the round before it.
 TEST(OusterFile, LoopsAtThePaceOfTheCapture) {
   const std::vector<Time> times = TimesOf(kThreeScans);
   const Duration round =
@@ -353,7 +354,7 @@ TEST(OusterFile, GivesImuSamplesOnAPadOfTheirOwn) {
       EXPECT_NEAR(static_cast<double>(t - last), 10e6, 1e6);
     }
     last = t;
-    // Gravity, and the accelerations of the car.
+    // The length is that of gravity plus the car's acceleration.
     EXPECT_NEAR(std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]), 9.81F, 4.0F);
   }
   std::remove(path.c_str());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// ouster_src and a sensor in software, over real sockets: the element finds and configures the
-// sensor, loses it, and finds it again.
+// Tests of ouster_src with a simulated sensor, over real sockets: the element finds the sensor and
+// configures it, loses it, and finds it again.
 #include <atomic>
 #include <cstdio>
 #include <fstream>
@@ -106,7 +106,8 @@ TEST(OusterLoss, IsCountedExactlyAsItWasInjected) {
       }
     }
   };
-  // A loss can only be counted between packets that arrive, so the first and last ones do.
+  // A loss is counted only if packets before and after it arrive. Therefore no packet is lost at
+  // the beginning and the end.
   send(10);
   faults.loss = faults.reorder = faults.duplicate = 0.05;
   send(6000);
@@ -129,9 +130,9 @@ TEST(OusterLive, CountsWhatIsLostOnTheWay) {
     return sensor.counts().sent > end;
   }));
   const auto stat = [&](const char* name) { return StatOf(receiver.source(), name); };
-  // A loss is counted once a later packet has come, and the receiver may lag on a busy machine. If
-  // the machine stops the sensor for a second, the sensor's clock jumps, and losses at the end of
-  // slices before the jump are not counted.
+  // A lost packet is counted once a later packet has arrived, and the receiver may lag on a busy
+  // machine. If the machine stops the sensor for a second, the sensor's clock jumps. In this case,
+  // losses at the end of slices before the jump are not counted.
   const auto lost = [&] { return stat("packets-lost") - before; };
   const auto known = [&] { return lost() >= sensor.counts().lost || stat("clock-jumps") > 0; };
   EXPECT_TRUE(receiver.PullUntil([&](GstBuffer*) { return known(); }));
@@ -147,7 +148,8 @@ TEST(OusterLive, DamagedPacketsAreToldByTheirCrc) {
   const gint64 end = g_get_monotonic_time() + kPatience_us;
   while (sensor.counts().corrupted < 50 && g_get_monotonic_time() < end) g_usleep(1000);
   sensor.Fault({{"corrupt", 0.0}});
-  // The sensor may have been within a scan on a busy machine, so a few packets may be missing.
+  // On a busy machine the faults may end within a scan, so a few damaged packets may not be counted
+  // yet.
   ASSERT_TRUE(receiver.PullUntil([&](GstBuffer*) {
     return StatOf(receiver.source(), "packets-damaged") + 2 >= sensor.counts().corrupted;
   }));
@@ -226,7 +228,8 @@ TEST(OusterLive, TakesANewGeometryWhenSomeoneElseReconfigures) {
                 {{"lidar_mode", "1024x10"}, {"udp_profile_lidar", "RNG19_RFL8_SIG16_NIR16_DUAL"}},
                 {false, true}, "127.0.0.1"),
             "");
-  // The caps of the pad may be newer than a buffer, so the buffer's size shows its geometry.
+  // The caps of the pad may be newer than a buffer that was pulled. Therefore the size of the
+  // buffer tells its geometry.
   bool discont = false;
   ASSERT_TRUE(receiver.PullUntil([&](GstBuffer* buffer) {
     discont = GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_DISCONT);
@@ -239,7 +242,8 @@ TEST(OusterLive, TakesANewGeometryWhenSomeoneElseReconfigures) {
   EXPECT_EQ(receiver.Info().ScanDuration(), 100 * GST_MSECOND);
 }
 
-/// The socket's buffer overflows in a pause; then the sensor sends to another port.
+/// The socket's buffer overflows while the element is paused. After that the sensor sends to
+/// another port.
 TEST(OusterLive, WhatTheKernelDroppedStaysCountedOnAnotherPort) {
   SoftwareSensor sensor({});
   const auto send_to = [&](guint16 port) {
@@ -253,7 +257,8 @@ TEST(OusterLive, WhatTheKernelDroppedStaysCountedOnAnotherPort) {
   receiver.SetState(GST_STATE_PAUSED);
   const auto sent = [&] { return sensor.counts().sent; };
   const auto before = sent();
-  // The socket's buffer holds fewer than 20 packets.
+  // The buffer of the socket has room for fewer than 20 packets, so most of 100 packets are
+  // dropped.
   ASSERT_TRUE(Eventually([&] { return sent() > before + 100; }));
   receiver.SetState(GST_STATE_PLAYING);
   const auto dropped = [&] { return StatOf(receiver.source(), "dropped-by-kernel"); };
@@ -297,7 +302,7 @@ TEST(OusterLive, APauseIsNoLossAndLeavesNothingOldBehind) {
   for (int i = 0; i < 20; ++i) {
     const BufferPtr buffer = receiver.Pull();
     ASSERT_TRUE(buffer);
-    // The first slices may have packets that were read before the pause.
+    // The first slices may contain packets that were read before the pause.
     if (i < 8) continue;
     EXPECT_GT(gst_lidar_buffer_get_capture_time(buffer.get()), resumed - 200 * GST_MSECOND) << i;
   }
@@ -367,7 +372,8 @@ TEST(OusterLive, PacketsOfARestartedSensorAreTakenWhereItsApiIsDown) {
   ASSERT_TRUE(receiver.PullUntil([](GstBuffer* buffer) {
     return GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_DISCONT) != FALSE;
   }));
-  // The API's errors did not count as a lost connection: the first loss is that of the packets.
+  // The errors of the API must not count as a lost connection. The first lost connection is that of
+  // the silent sensor.
   sensor.Fault({{"silent", true}});
   std::string reason;
   for (gboolean connected = TRUE; connected != FALSE;) {
@@ -398,18 +404,19 @@ TEST(OusterLive, TheCaptureTimeOfASensorOnPtpIsTrueUtc) {
   const BufferPtr buffer = receiver.Pull();
   const auto age = static_cast<gint64>(g_get_real_time()) * 1000 -
                    static_cast<gint64>(gst_lidar_buffer_get_capture_time(buffer.get()));
-  // A slice is 12.5 ms long, and the machine may be busy. Without the offset between PTP and UTC
-  // the age would be wrong by 37 s.
+  // A slice is 12.5 ms long, and a busy machine may add to its age. If the offset between PTP and
+  // UTC were missing, the age would be wrong by 37 s.
   EXPECT_GT(age, 12 * static_cast<gint64>(GST_MSECOND));
   EXPECT_LT(age, 30 * static_cast<gint64>(GST_SECOND));
-  // If a busy machine sends a packet a second late, the clock counts as not synchronised.
+  // On a busy machine a packet may be sent a second late. Then the clock counts as not synchronised
+  // for a while.
   EXPECT_TRUE(Eventually([&] {
     receiver.Drain();
     return StatOf(receiver.source(), "clock-synchronised") == 1;
   }));
 }
 
-/// A server that is no sensor.
+/// An HTTP server at a sensor's address that is not a sensor.
 class Impostor {
  public:
   explicit Impostor(tools::HttpServer::Handler handler)
@@ -438,7 +445,7 @@ TEST(OusterLive, ASensorThatDoesNotSayWhereItSendsIsAClearError) {
   EXPECT_NE(error.find("does not report the udp_dest that it chose"), std::string::npos) << error;
 }
 
-/// Firmware other than that of ouster-replay accepts texts only without quotes.
+/// Unlike ouster-replay, old firmware accepts texts only without quotes.
 TEST(OusterLive, AsksOldFirmwareForWhatIsActiveAndSetsTextsWithoutQuotes) {
   std::string config;
   std::string set;
@@ -474,7 +481,7 @@ TEST(OusterLive, FollowsNoRedirect) {
   EXPECT_EQ(visits, 0);
 }
 
-/// Sets a variable of the environment during its lifetime.
+/// Sets an environment variable, and restores its old value at the end of the lifetime.
 class Variable {
  public:
   Variable(const char* name, const char* value) : name_(name) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Reports of ouster_src about lost packets.
+// Tests of the reports of ouster_src about lost packets.
 #include <gtest/gtest.h>
 
 #include "ext/ouster/loss_report.h"

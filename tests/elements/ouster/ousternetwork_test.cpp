@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// ouster_src on all kinds of addresses, and several sources on one port. Multicast needs a network
-// namespace of the test itself, and thus root.
+// Tests of ouster_src with all kinds of addresses, and of several sources on one port. The tests of
+// multicast run in a network namespace of their own, so they need root.
 #include <net/if.h>
 #include <sched.h>
 #include <sys/ioctl.h>
@@ -21,8 +21,8 @@ namespace {
 
 using gst::BufferPtr;
 
-/// Enters a new network namespace, whose loopback carries multicast. Returns false if the user may
-/// not make one.
+/// Enters a new network namespace whose loopback interface supports multicast. Returns false if the
+/// user is not allowed to make a namespace.
 bool EnterOwnNetwork() {
   if (unshare(CLONE_NEWNET) != 0) return false;
   const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
@@ -35,8 +35,9 @@ bool EnterOwnNetwork() {
   return ok;
 }
 
-/// Adds two Ethernets, because loopback carries no multicast over IPv6. Without an interface in a
-/// socket's request, the kernel uses the first one for multicast. Returns false without iproute2.
+/// Adds two Ethernet interfaces, because the loopback interface does not support multicast over
+/// IPv6. If a socket names no interface, the kernel uses the first of the two for multicast.
+/// Returns false if iproute2 is missing.
 bool AddEthernets() {
   return std::system(
              "for i in 0 2; do ip link add lidar$i type veth peer name lidar$((i + 1)) && "
@@ -44,7 +45,8 @@ bool AddEthernets() {
              "ip addr add fd00:6c69:$i::1/64 dev lidar$i nodad || exit 1; done 2>/dev/null") == 0;
 }
 
-// Runs before main, because GLib's threads inherit the namespace of the thread that starts them.
+// This must run before main(), because GLib's threads inherit the namespace of the thread that
+// starts them.
 const bool kOwnNetwork = EnterOwnNetwork();
 const bool kEthernet = kOwnNetwork && AddEthernets();
 
@@ -99,7 +101,7 @@ TEST(OusterMulticast, ReachesEveryReceiverOfTheGroup) {
   const Receiver::Ports ports{FreePort(), FreePort()};
   Receiver first(sensor.host(), properties, ports);
   ASSERT_TRUE(first.Pull());
-  // Another program opens a socket that does not share its port.
+  // Another program opens a socket that does not share its port with others.
   GError* raw = nullptr;
   const gst::UdpBind bind{"", ports.lidar, G_SOCKET_FAMILY_IPV4, true};
   const std::unique_ptr<GSocket, gst::GObjectUnref> other(gst::OpenUdpSocket(bind, &raw));
@@ -125,7 +127,7 @@ TEST(OusterMulticast, WorksOverIpv6) {
   EXPECT_EQ(sensor.config()["udp_dest"], group);
 }
 
-/// Two sensors that send to one port of this machine.
+/// A fixture with two sensors that send to the same port of this machine.
 class OusterOnePort : public ::testing::Test {
  protected:
   static SoftwareSensor::Options Second(const char* mode = "512x20") {
@@ -138,8 +140,9 @@ class OusterOnePort : public ::testing::Test {
   const Receiver::Ports ports_{FreePort(), FreePort()};
 };
 
-/// Expects buffers without a gap, unless the kernel's buffer was full, a sensor's packets were
-/// reordered by a change of its processor, or the machine stopped the sensor for a second.
+/// Expects buffers without gaps. A gap is allowed if the kernel's buffer was full, if a sensor's
+/// packets were reordered because its thread moved to another processor, or if the machine stopped
+/// the sensor for a second.
 void ExpectWholeScans(Receiver* receiver, int buffers) {
   int gaps = 0;
   for (int i = 0; i < buffers; ++i) {

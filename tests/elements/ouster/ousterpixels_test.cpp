@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A sensor whose metadata has angles for every pixel: points follow those angles. Clouds have no
-// sensor model, so the encoder uses xyz geometry.
+// Tests of a sensor whose metadata has angles for every pixel. The points follow these angles.
+// Clouds have no sensor model, so the encoder uses xyz geometry.
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -19,7 +19,8 @@ using gst::CloudInfo;
 
 const char* const kPcap = "OS-1-128_v2.3.0_1024x10_lb_n3.pcap";
 
-/// The sensor of kPcap, but with pixel angles of a view of 120 by 50 degrees.
+/// A fixture with the sensor of kPcap. Its metadata has pixel angles for a view of 120 by 50
+/// degrees.
 class OusterPixels : public ::testing::Test {
  protected:
   OusterPixels() {
@@ -99,7 +100,7 @@ TEST_F(OusterPixels, TravelAsCoordinates) {
   const auto info = CloudInfo::FromCaps(caps.get());
   ASSERT_TRUE(info);
   EXPECT_FALSE(info->sensor_model);
-  EXPECT_EQ(info->height, 1U);  // xyz geometry does not keep the order
+  EXPECT_EQ(info->height, 1U);  // with xyz geometry the order of points is lost
   const BufferMap from(sent.get(), GST_MAP_READ);
   std::size_t returns = 0;
   for (std::size_t i = 0; i < from.size() / 20; ++i) {
@@ -107,7 +108,7 @@ TEST_F(OusterPixels, TravelAsCoordinates) {
     std::memcpy(&range, from.data() + i * 20 + 16, sizeof range);
     returns += range != 0 ? 1 : 0;
   }
-  // Points in one cell of the grid become one.
+  // Points that are in the same cell of the grid become one point.
   EXPECT_LE(info->Points(), returns);
   EXPECT_GT(info->Points(), returns / 2);
 }

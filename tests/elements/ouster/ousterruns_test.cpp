@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// ouster_src: each property has an effect, each counter counts, and an element that was stopped
-// behaves as a new one.
+// Tests of ouster_src: each property has an effect, each counter counts, and an element that was
+// stopped behaves like a new one.
 #include <algorithm>
 #include <atomic>
 #include <cstring>
@@ -17,13 +17,14 @@
 namespace lidar::test {
 namespace {
 
-/// A capture that a test can change: 64 packets of a scan of 32 beams, and packets of the IMU.
+/// The records of a capture, which a test can change. They are 64 packets of a scan of 32 beams,
+/// and packets of the IMU.
 struct CaptureFile {
   struct Record {
-    guint64 us;  // time of capture
+    guint64 us;  // time of the capture [us]
     std::string frame;
   };
-  static constexpr std::size_t kPayload = 42;  // in a frame
+  static constexpr std::size_t kPayload = 42;  // offset of the UDP payload in a frame
   static constexpr std::size_t kLidarFrame = 8490;
   static constexpr std::size_t kColumns = kPayload + 32;
 
@@ -47,7 +48,8 @@ struct CaptureFile {
     }
     std::ofstream(path, std::ios::binary) << bytes.substr(0, bytes.size() - cut);
   }
-  /// Returns the lidar packets, moved to the scan `n` periods later, and captured `delay_us` late.
+  /// Returns the lidar packets of the scan, moved to the scan that is `n` periods later. They are
+  /// captured `delay_us` late.
   std::vector<Record> Scan(guint n, guint64 delay_us = 0) const {
     std::vector<Record> scan;
     for (Record r : records) {
@@ -74,7 +76,7 @@ const std::string kDual = "OS-0-32-U1_v2.2.0_1024x10";
 const TempFolder kRunFolder;
 const std::string kRunFiles = kRunFolder.path() + "/";
 
-/// Writes metadata in which `from` is replaced. Returns its path.
+/// Writes the metadata with `from` replaced by `to`. Returns the path of the file.
 std::string ChangedMetadata(const char* name, const std::string& from, const std::string& to) {
   std::string text = ReadFile(DataPath(kDual + ".json"));
   text.replace(text.find(from), from.size(), to);
@@ -83,7 +85,8 @@ std::string ChangedMetadata(const char* name, const std::string& from, const std
   return path;
 }
 
-/// Writes a capture of a sensor on PTP: its clock is 37 s ahead of UTC. Returns its path.
+/// Writes the capture of a sensor that uses PTP: the sensor's clock is 37 s ahead of UTC. Returns
+/// the path of the file.
 std::string CaptureOnPtp() {
   CaptureFile file(DataPath(kDual + ".pcap"));
   file.records = file.Scan(0);
@@ -113,7 +116,7 @@ std::string LeftMask() {
   return path;
 }
 
-/// ouster_src on a file: its clouds and its IMU's samples.
+/// A run of ouster_src on a file. Records the clouds and the samples of the IMU.
 class FileRun {
  public:
   explicit FileRun(const std::string& properties, bool with_bytes = true) {
@@ -130,7 +133,7 @@ class FileRun {
   FileRun(const FileRun&) = delete;
   FileRun& operator=(const FileRun&) = delete;
 
-  /// Plays to the end. Returns what happened.
+  /// Plays to the end of the file. Returns everything that the element output and posted.
   Lines Play() {
     SetPlaying(h_.get());
     AwaitEnd();
@@ -163,7 +166,7 @@ class FileRun {
   std::optional<RunTrace> trace_;
 };
 
-/// Returns the properties of a source of a file, without the property `changed`.
+/// Returns the properties of a source that reads a file, but omits the property `changed`.
 std::string WithFile(const std::string& changed) {
   std::string all;
   if (changed != "location") all += " location=" + DataPath(kDual + ".pcap");
@@ -172,7 +175,7 @@ std::string WithFile(const std::string& changed) {
 }
 
 struct OusterEffect {
-  const char* others;  // properties that the effect needs
+  const char* others;  // properties without which there is no effect
   const char* property;
   std::string value;
 };
@@ -206,7 +209,7 @@ TEST_P(OusterEachFileProperty, ChangesWhatComesOut) {
 }
 INSTANTIATE_TEST_SUITE_P(Of, OusterEachFileProperty, ::testing::ValuesIn(kFileEffects));
 
-/// Positions are left out: their last bits differ between machines.
+/// Positions are not compared, because their last bits differ between machines.
 TEST(OusterGoldenCourses, OfAFileAreAsTheyWere) {
   for (const auto& [others, property, value] : kFileEffects) {
     const std::string name = property;
@@ -232,7 +235,7 @@ TEST(OusterProperties, ThePtpOffsetMakesASynchronisedClockOfUtc) {
   EXPECT_FALSE(synchronised(FileRun(source + " ptp-utc-tai-offset=0").Play()));
 }
 
-/// Returns true if a program could bind a port of this machine.
+/// Returns true if no program has bound `port` at this address.
 bool IsFree(const char* address, guint16 port) {
   const std::unique_ptr<GSocket, gst::GObjectUnref> socket(
       g_socket_new(G_SOCKET_FAMILY_IPV4, G_SOCKET_TYPE_DATAGRAM, G_SOCKET_PROTOCOL_UDP, nullptr));
@@ -241,7 +244,7 @@ bool IsFree(const char* address, guint16 port) {
   return g_socket_bind(socket.get(), place.get(), FALSE, nullptr) != FALSE;
 }
 
-/// A sensor that refuses each configuration. asked() is true after the first request.
+/// A sensor that refuses every configuration. asked() returns true after the first request.
 class RefusingSensor {
  public:
   RefusingSensor(int status, bool can_be_read) : status_(status), can_be_read_(can_be_read) {}
@@ -261,10 +264,10 @@ class RefusingSensor {
                             [this](const tools::HttpRequest& r) { return Answer(r); }};
 };
 
-/// Live sources: their ports, their requests to a sensor, and their first message.
+/// A fixture for live sources: their ports, their requests to a sensor, and their first message.
 class OusterLiveEffects : public ::testing::Test {
  protected:
-  /// Returns the text of the first error or warning.
+  /// Plays a source. Returns the text of its first error or warning.
   static std::string FirstProblem(const std::string& properties) {
     const gst::ElementPtr pipeline(
         gst_parse_launch(("ouster_src " + properties + " ! fakesink").c_str(), nullptr));
@@ -279,7 +282,7 @@ class OusterLiveEffects : public ::testing::Test {
     return "metadata=" + DataPath(kDual + ".json") + " lidar-port=" + std::to_string(lidar) +
            " imu-port=" + std::to_string(imu) + " ";
   }
-  /// Returns those of two addresses at which a source binds `port`.
+  /// Returns those of the addresses 127.0.0.1 and 127.0.0.2 at which the source binds `port`.
   std::string Taken(const std::string& properties, guint16 port) const {
     const gst::ElementPtr source(gst_parse_launch(("ouster_src " + properties).c_str(), nullptr));
     EXPECT_NE(gst_element_set_state(source.get(), GST_STATE_PAUSED), GST_STATE_CHANGE_FAILURE);
@@ -345,11 +348,11 @@ TEST_F(OusterLiveEffects, TheReceiveBufferOfASharedSocketIsTheLargest) {
   for (const auto& pipeline : pipelines) gst_element_set_state(pipeline.get(), GST_STATE_NULL);
 }
 
-/// A source reads the shared socket also for the others, whose queues hold at least 1 MiB. The
-/// packets of this test have more than twice as many bytes.
+/// One source reads the shared socket for all sources. The queue of each other source has room for
+/// at least 1 MiB. The packets of this test have more than twice as many bytes.
 TEST_F(OusterLiveEffects, SourcesOfOnePortGetEachPacketHoweverManyCome) {
   constexpr std::size_t kPackets = 300;
-  constexpr std::size_t kAtOnce = 8;  // fewer than a small socket holds
+  constexpr std::size_t kAtOnce = 8;  // fewer packets than even a small socket buffer has room for
   const guint16 port = FreePort();
   const std::string launch =
       "ouster_src name=s buffer-size=1048576 " + Ports(port, FreePort()) + " ! fakesink";
@@ -420,7 +423,7 @@ TEST(OusterProperties, AreAllInATest) {
     EXPECT_EQ(tried.count(name), 1U) << name;
 }
 
-/// Writes a capture with an event for each counter. Returns its path.
+/// Writes a capture with an event for each counter. Returns the path of the file.
 std::string CaptureOfTroubles() {
   using Record = CaptureFile::Record;
   CaptureFile file(DataPath(kDual + ".pcap"));
@@ -438,7 +441,7 @@ std::string CaptureOfTroubles() {
   all.push_back(imu[0]);
   all.push_back(imu[1]);
   const std::vector<Record> second = file.Scan(1);
-  add(second, 0, 9);  // two packets are missing, and a third one comes late
+  add(second, 0, 9);  // then two packets are missing, and a third comes late
   add(second, 12, 40);
   all.push_back(second[9]);
   add(second, 40, 45);
@@ -451,7 +454,7 @@ std::string CaptureOfTroubles() {
   all.push_back(stray);
   add(second, 45, 64);
   Record short_one = imu[2];
-  short_one.frame[39] = 8 + 40;  // the length in the UDP header
+  short_one.frame[39] = 8 + 40;  // the length in the UDP header is too small
   all.push_back(short_one);
   add(file.Scan(2, 5 * G_USEC_PER_SEC), 0, 64);
   std::vector<Record> restarted = file.Scan(3, 5 * G_USEC_PER_SEC);
@@ -514,7 +517,8 @@ TEST(OusterSecondRun, OfAFileThatWasSoughtGivesTheSameClouds) {
   Lines again = run.SeekToBegin();
   for (Lines* lines : {&first, &again})
     for (std::string& line : *lines) {
-      const std::size_t number = line.find(" slice ");  // the numbers of scans continue
+      // The numbers of scans do not restart after a seek.
+      const std::size_t number = line.find(" slice ");
       if (number != std::string::npos) line.erase(number, line.find(' ', number + 7) - number);
     }
   EXPECT_EQ(again, first);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// ouster_src on captures: duration, and seeks.
+// Tests of ouster_src on captures: the duration, and seeks.
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
@@ -18,7 +18,7 @@ using gst::EventPtr;
 
 constexpr GstClockTime kSlice = 12500 * GST_USECOND;
 
-/// The parts of a slice that must not depend on the position at which playback began.
+/// The parts of a slice that must not depend on the position from which the file is played.
 struct Played {
   GstClockTime pts = 0;
   GstClockTime captured = 0;
@@ -38,7 +38,7 @@ Harness Open(const std::string& location, const char* more = "") {
   return h;
 }
 
-/// Plays to the end of the stream. Returns the slices.
+/// Plays to the end of the stream. Returns the slices that were played.
 std::vector<Played> PlayOn(const Harness& h) {
   for (bool ended = false; !ended;) {
     const EventPtr event(gst_harness_pull_event(h.get()));
@@ -74,7 +74,8 @@ std::vector<Played> After(const std::vector<Played>& all, std::size_t n) {
   return {all.begin() + static_cast<std::ptrdiff_t>(n), all.end()};
 }
 
-/// Writes the frames of the pcap file as pcapng, with a clock of microseconds or of nanoseconds.
+/// Writes the frames of a pcap file as pcapng, once with timestamps in microseconds, and once in
+/// nanoseconds.
 std::string WritePcapNg(const std::string& pcap) {
   const std::string bytes = ReadFile(pcap);
   const auto at = [&](std::size_t i) {
@@ -128,17 +129,18 @@ TEST(OusterSeek, GoesToTheSliceOfATimeAndPlaysTheSameFromThere) {
   const auto all = PlayOn(h);
   ASSERT_EQ(all.size(), 24U);
   for (const std::size_t n : {23U, 5U, 12U, 0U, 20U}) {
-    // Seeks to the beginning and to the middle of slice n.
+    // Seeks to the beginning of slice n, and to its middle.
     for (const GstClockTime into : {GstClockTime{0}, kSlice / 2}) {
       ASSERT_TRUE(Seek(h, {static_cast<gint64>(all[n].pts + into)}));
       const auto rest = PlayOn(h);
-      // Slices overlap by the jitter of the sensor's motor.
+      // Slices may overlap, because the sensor's motor jitters. Therefore one more slice may be
+      // played.
       ASSERT_GE(rest.size(), 24 - n);
       ASSERT_LE(rest.size(), 25 - n);
       EXPECT_TRUE(After(rest, rest.size() - (24 - n)) == After(all, n)) << n;
     }
   }
-  // A slice that ends where the segment begins is left out.
+  // A slice that ends exactly where the segment begins is not played.
   ASSERT_TRUE(Seek(h, {static_cast<gint64>(all[4].pts + kSlice)}));
   EXPECT_TRUE(PlayOn(h) == After(all, 5));
 }
@@ -209,7 +211,7 @@ TEST(OusterSeek, NeitherBackwardsNorLiveNorInALoop) {
   }
 }
 
-/// What passed a pad: the start of the newest segment, and the times of buffers in it.
+/// The start of the newest segment at a pad, and the times of the buffers in this segment.
 struct Seen {
   std::mutex mutex;
   GstClockTime start = 0;
@@ -279,7 +281,7 @@ TEST(OusterSeek, TakesTheImuAlongOnce) {
   }
   EXPECT_NEAR(static_cast<double>(samples.times.size()), all / 2.0, 2.0);
   EXPECT_GE(samples.times.front(), middle);
-  // The samples have the same times as in the first pass.
+  // The samples have the same times as in the first pass, but begin later.
   ASSERT_LE(samples.times.size(), first_pass.size());
   EXPECT_TRUE(std::equal(samples.times.rbegin(), samples.times.rend(), first_pass.rbegin()));
   gst_element_set_state(pipeline.get(), GST_STATE_NULL);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// HTTP servers that are not sensors, at a sensor's address: the element reports that, stays within
-// its bounds and stops on request.
+// Tests of ouster_src with HTTP servers that are not sensors. The element reports an error, limits
+// its memory and time, and can be stopped.
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -85,7 +85,7 @@ void AwaitRequest(const HostileServer& server, int earlier) {
   ASSERT_TRUE(Eventually([&] { return server.requests() > earlier; }));
 }
 
-/// Returns the time that the element takes to stop, `wait_ms` after its first request.
+/// Stops the element `wait_ms` after its first request. Returns the time that the stop takes.
 std::chrono::milliseconds TimeToStop(const HostileServer& server, const char* properties,
                                      guint wait_ms) {
   const int earlier = server.requests();
@@ -122,7 +122,7 @@ INSTANTIATE_TEST_SUITE_P(All, OusterServer, ::testing::ValuesIn(kAttacks),
                            return std::string(attack.param.name);
                          });
 
-/// The element asks a sensor again after a second at the earliest, whatever packets come.
+/// The element sends at most one request per second to a sensor's API, whatever packets arrive.
 TEST(OusterQuestions, AreAsFewAsSeconds) {
   const Receiver::Ports ports{FreePort(), FreePort()};
   std::ifstream file(DataPath("OS-1-128_v2.3.0_1024x10.json"));
@@ -152,7 +152,7 @@ TEST(OusterQuestions, AreAsFewAsSeconds) {
   EXPECT_LE(server.requests(), of_a_question * (1 + seconds));
 }
 
-/// A sensor whose API says on request that the sensor is switched off.
+/// A sensor whose API tells, if the test wants it, that the sensor is switched off.
 class ChangingAnswers {
  public:
   explicit ChangingAnswers(const Receiver::Ports& ports) : sender_(ports.lidar) {
@@ -170,7 +170,7 @@ class ChangingAnswers {
   void SendLidar() {
     for (const auto& packet : packets_) sender_.Send(packet);
   }
-  /// Sends four packets of another size, after which the element asks the API.
+  /// Sends four packets of another size. After such packets the element sends a request to the API.
   void SendWrongSizes() {
     for (int i = 0; i < 4; ++i) sender_.Send(std::vector<std::uint8_t>(1'000));
   }
@@ -216,7 +216,7 @@ TEST(OusterHostname, MayNameAnInterfaceOrAskForTls) {
   }
 }
 
-/// Returns the error of ouster_src if it cannot start while an object of type Scarcity exists.
+/// Returns the error of an ouster_src that cannot start while an object of type Scarcity exists.
 template <class Scarcity>
 std::string ErrorAmid() {
   const gst::ElementPtr source(
@@ -238,7 +238,7 @@ TEST(OusterThread, ThatCannotBeStartedIsAnElementError) {
   EXPECT_NE(error.find("Cannot start a thread"), std::string::npos) << error;
 }
 
-/// Lets the process open only ten more files, as `ulimit -n` does.
+/// Limits the process to ten more open files, as `ulimit -n` does.
 class ScarceFiles {
  public:
   ScarceFiles() {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// ouster_src on sockets.
+// Tests of ouster_src that receives from sockets.
 
 #include "tests/elements/ouster/ouster_support.h"
 #include "tests/support/clock_wait.h"
@@ -43,7 +43,7 @@ TEST_F(OusterUdp, GivesASliceOnceItsLastPacketCame) {
     GstLidarSlice slice{};
     ASSERT_TRUE(gst_lidar_buffer_get_slice(buffer.get(), &slice));
     EXPECT_EQ(slice.slice_index, i / 8);
-    // The capture time follows the arrival if the sensor has no PTP.
+    // If the sensor does not use PTP, the capture time is derived from the time of arrival.
     const auto now = static_cast<gint64>(g_get_real_time()) * 1000;
     const auto age = now - static_cast<gint64>(gst_lidar_buffer_get_capture_time(buffer.get()));
     EXPECT_GT(age, 0);
@@ -125,7 +125,7 @@ TEST_F(OusterUdp, PacketsOfAnotherSizeBetweenGoodOnesAreOnlyCounted) {
 }
 
 TEST_F(OusterUdp, ASmallReceiveBufferIsWarnedOfWithTheRemedy) {
-  // The size is more than the kernel grants even to root.
+  // The size is more than the kernel allows even for root.
   const std::string launch =
       "ouster_src buffer-size=2147483647 lidar-port=" + std::to_string(FreePort()) +
       " imu=false metadata=" + DataPath(kJson) + " ! fakesink";
@@ -140,7 +140,7 @@ TEST_F(OusterUdp, ASmallReceiveBufferIsWarnedOfWithTheRemedy) {
   EXPECT_NE(text.find("sysctl -w net.core.rmem_max=2147483647"), std::string::npos) << text;
 }
 
-/// Packets of old firmware have no serial number; each sensor has an address of its own.
+/// Packets of old firmware have no serial number, so sensors are distinguished by their addresses.
 TEST_F(OusterUdp, TellsSensorsWithoutSerialNumbersByTheirAddresses) {
   const ouster::Metadata legacy = LoadMetadata("OS-1-32-G_v2.1.1_1024x10.json");
   const auto packets = LoadPackets("OS-1-32-G_v2.1.1_1024x10.pcap", legacy);
@@ -162,7 +162,7 @@ TEST_F(OusterUdp, StopsWhileItWaitsForPackets) {
   EXPECT_EQ(gst_element_set_state(h->element, GST_STATE_NULL), GST_STATE_CHANGE_SUCCESS);
 }
 
-/// A sensor whose silence a test clock measures.
+/// A fixture with a sensor whose silence is measured by a test clock.
 class OusterSilence : public OusterUdp {
  protected:
   OusterSilence() : imu_(imu_port_) {
@@ -174,7 +174,7 @@ class OusterSilence : public OusterUdp {
     source_.reset(gst_bin_get_by_name(GST_BIN(h_->element), "src"));
     bus_.emplace(h_->element);
     UseTestClock(h_.get());
-    Pass(3600 * GST_SECOND);  // packets before running time 0 are dropped
+    Pass(3600 * GST_SECOND);  // later than running time 0, because earlier packets are dropped
     SetPlaying(h_.get());
     sender_ = std::make_unique<UdpSender>(port_);
   }
@@ -183,8 +183,8 @@ class OusterSilence : public OusterUdp {
     for (std::size_t i = 0; i < packets; ++i) sender_->Send(packets_[sent_++]);
     EXPECT_TRUE(Eventually([this] { return StatOf(source_.get(), "packets") == sent_; }));
   }
-  /// Returns true if no silence is reported. Sends a packet of the IMU first, which ends no
-  /// silence.
+  /// Sends a packet of the IMU first, because such packets must not end a silence. Returns true if
+  /// the element reports no silence.
   bool IsNotReported() {
     const auto taken = [this] { return StatOf(source_.get(), "packets-imu"); };
     const guint64 before = taken();
@@ -247,7 +247,7 @@ TEST_F(OusterSilence, IsReportedEachTimeAndOnce) {
 TEST_F(OusterSilence, DoesNotBeginInAPause) {
   Send(kPacketsOfSlice / 2);
   gst_element_set_state(h_->element, GST_STATE_PAUSED);
-  Send(kPacketsOfSlice / 2);  // the source waits with them for the end of the pause
+  Send(kPacketsOfSlice / 2);  // the source reads these packets after the pause
   Pass(10 * GST_SECOND);
   SetPlaying(h_.get());
   EXPECT_TRUE(IsNotReported());

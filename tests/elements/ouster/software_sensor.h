@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// ouster-replay inside the test: a sensor that drives through a synthetic world, on loopback.
+// ouster-replay inside the test program: a sensor that drives through a synthetic world and sends
+// on the loopback interface.
 #pragma once
 #include <atomic>
 #include <memory>
@@ -20,10 +21,10 @@ class SoftwareSensor {
     std::string mode = "512x20";
     std::string timestamp_mode = "TIME_FROM_INTERNAL_OSC";
     bool old_firmware = false;
-    std::string destination;  // empty: none, until the sensor is configured
+    std::string destination;  // empty: sends nothing until it is configured
     std::string http_address = "127.0.0.1";
-    std::string source;           // address to send from; empty: any
-    std::string multicast_iface;  // empty: the kernel's choice
+    std::string source;           // source address; empty: any
+    std::string multicast_iface;  // empty: the kernel chooses
     std::uint64_t seed = 1;       // of the world and of the serial number
   };
   explicit SoftwareSensor(const Options& options) : metadata_(Make(options)) {
