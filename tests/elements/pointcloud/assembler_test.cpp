@@ -18,12 +18,13 @@ namespace {
 using test::Harness;
 
 constexpr guint kBeams = 2;
-constexpr guint kColumns = 32;  // of a turn
+constexpr guint kColumns = 32;  // columns of a full turn
 constexpr guint kSlices = 4;
 constexpr guint kWidth = kColumns / kSlices;
 constexpr GstClockTime kSweep = 25 * GST_MSECOND;
 
-/// 2 beams, 32 columns, 10 scans a second, one byte of intensity a point.
+/// Returns the info of slices from a sensor with 2 beams, 32 columns and 10 scans per second. The
+/// points have one byte of intensity.
 CloudInfo SliceInfo(guint width = kWidth) {
   CloudInfo info;
   info.width = width;
@@ -44,7 +45,8 @@ struct SliceSpec {
   guint first_column = 0;
 };
 
-/// Returns a slice whose bytes all are 1 + its index, so that zeros are missing columns.
+/// Returns a slice. All its bytes have the value 1 + its index, so a 0 in a scan belongs to a
+/// missing column.
 BufferPtr MakeSlice(const SliceSpec& spec, gsize size = SliceInfo().FrameSize()) {
   BufferPtr buffer(gst_buffer_new_allocate(nullptr, size, nullptr));
   gst_buffer_memset(buffer.get(), 0, static_cast<guint8>(1 + spec.index), size);
@@ -85,7 +87,8 @@ class Assembler : public ::testing::Test {
   Harness h_;
 };
 
-/// Returns the first byte of each column, beam by beam. It is 1 + the index of the column's slice.
+/// Returns the first byte of each column, beam by beam. It is 1 + the index of the slice that has
+/// the column.
 std::vector<int> ColumnsOf(const BufferPtr& scan, gsize step = 13) {
   const BufferMap map(scan.get(), GST_MAP_READ);
   std::vector<int> columns;
@@ -146,7 +149,7 @@ TEST_F(Assembler, HasTheTimesOfTheFirstSliceThoughItCameSecond) {
 TEST_F(Assembler, FlagsALostSliceAndLeavesItsColumnsZero) {
   for (const guint i : {0U, 1U, 3U}) Push(Slice(0, i));
   EXPECT_EQ(Waiting(), 0U);
-  Push(Slice(1, 0));  // not live: the next scan ends this one
+  Push(Slice(1, 0));  // the stream is not live, so the next scan ends this one
   const BufferPtr scan = Pull();
   EXPECT_EQ(ColumnsOf(scan), Columns({1, 2, 0, 4}));
   EXPECT_TRUE(IsCorrupted(scan));
@@ -191,8 +194,8 @@ TEST_F(Assembler, KeepsTheTimesOfOthersWhereTheFirstSliceComesLateAndHasNone) {
 }
 
 TEST_F(Assembler, AWindowMayPassTheEndOfTheTurn) {
-  // The sensor's window has 16 columns from column 24 on: slices at columns 24 and 0. Scan 0 lacks
-  // the slice at 24.
+  // The sensor's window has 16 columns and begins at column 24. Its slices are at columns 24 and 0.
+  // Scan 0 lacks the slice at column 24.
   Push(MakeSlice({0, 1, 2, 0}));
   Push(MakeSlice({1, 0, 2, 24}));
   Push(MakeSlice({1, 1, 2, 0}));
@@ -234,12 +237,12 @@ TEST_F(Assembler, TakesASliceOfSixteenScansBeforeForThatOfANewSender) {
 }
 
 TEST_F(Assembler, DropsSlicesThatNoScanIsMadeOf) {
-  Push(MakeSlice({0, 4, 4, 0}));               // index past the count
+  Push(MakeSlice({0, 4, 4, 0}));               // the index is larger than the count
   Push(MakeSlice({0, 0, 4'000'000'000U, 0}));  // more slices than a turn has columns
-  Push(MakeSlice({0, 0, 0, 0}));               // no slices
+  Push(MakeSlice({0, 0, 0, 0}));               // the scan has no slices
   Push(MakeSlice({0, 0, 6, 0}));               // more columns than the sensor has
   Push(MakeSlice({0, 0, 4, 0}, 5));            // less than a slice
-  Push(MakeSlice({0, 0, 4, 4'294'967'295U}));  // a column that no turn has
+  Push(MakeSlice({0, 0, 4, 4'294'967'295U}));  // no turn has such a column
   EXPECT_EQ(Stat("invalid-slices"), 5U);
   for (guint i = 1; i < kSlices; ++i) Push(MakeSlice({0, i, kSlices, i * kWidth}));
   EXPECT_EQ(ColumnsOf(Pull()), Columns({1, 2, 3, 4}));
@@ -366,7 +369,7 @@ TEST_F(Assembler, StringsUnorganisedPointsTogether) {
   info.height = 1;
   info.sensor_model.reset();
   for (guint i = 0; i < kSlices; ++i) {
-    info.width = 10 + i;  // as many points as the slice has
+    info.width = 10 + i;  // the slice's number of points
     SetCaps(info);
     Push(MakeSlice({0, i, kSlices, 0}, info.FrameSize()));
   }
@@ -386,7 +389,7 @@ TEST_F(Assembler, OpenScansLeaveWithTheirCapsBeforeNewOnes) {
   EXPECT_FALSE(IsCorrupted(Pull()));
 }
 
-/// Changes of the caps after which slices cannot belong to the same scan.
+/// The parameter changes the caps in a way after which slices cannot belong to the same scan.
 class AssemblerOfTwoLayouts : public Assembler,
                               public ::testing::WithParamInterface<void (*)(CloudInfo*)> {};
 TEST_P(AssemblerOfTwoLayouts, NeverMixesThemInAScan) {
@@ -432,8 +435,8 @@ INSTANTIATE_TEST_SUITE_P(All, AssemblerOfTwoLayouts,
                                cloud->sensor_model->beams.push_back({0, -3, 0});
                              }));
 
-/// The sensor has one beam. With its model, columns have positions; without it, points are
-/// appended.
+/// The sensor has only one beam. With a sensor model, columns have positions in the scan. Without a
+/// sensor model, points are appended.
 TEST_F(Assembler, NeverMixesColumnsAndPoints) {
   CloudInfo columns = SliceInfo();
   columns.height = 1;
@@ -478,7 +481,8 @@ TEST_F(Assembler, RefusesCapsThatAreNoCloud) {
 class LiveAssembler : public Assembler {
  protected:
   LiveAssembler() {
-    // The harness answers the element's latency query as a live source with the latency of a slice.
+    // The harness answers latency queries like a live source whose latency is the duration of a
+    // slice.
     gst_harness_set_live(h_.get(), TRUE);
     gst_harness_set_upstream_latency(h_.get(), kSweep);
     test::UseTestClock(h_.get());
@@ -488,7 +492,8 @@ class LiveAssembler : public Assembler {
 TEST_F(LiveAssembler, AScanLeavesAtItsDeadlineWithoutItsLastSlice) {
   for (guint i = 0; i < 3; ++i) Push(Slice(0, i));
   ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h_.get(), 1, 10));
-  // The deadline is one scan, the latency of the source and max-wait after the first column.
+  // The deadline is the time of the first column, plus the duration of a scan, the latency of the
+  // source, and max-wait.
   EXPECT_EQ(gst_test_clock_get_next_entry_time(GST_TEST_CLOCK(GST_ELEMENT_CLOCK(h_->element))),
             test::kClockStart + (100 + 25 + 20) * GST_MSECOND);
   EXPECT_EQ(Waiting(), 0U);
@@ -509,9 +514,9 @@ TEST_F(LiveAssembler, AScanLeavesAtItsDeadlineAlsoBehindAFlush) {
   EXPECT_EQ(ColumnsOf(Pull()), Columns({1, 2, 3, 0}));
 }
 
-/// Returns true once the thread of the element's timer sleeps.
+/// Waits until the thread of the element's timer sleeps. Returns false if that takes too long.
 bool AwaitSleepOfTimer(GstElement* assembler) {
-  // A thread has the name of its element and pad, which Linux cuts to 15 characters.
+  // GStreamer names a thread after its element and pad. Linux cuts the name to 15 characters.
   const std::string name = (std::string(GST_OBJECT_NAME(assembler)) + ":src").substr(0, 15);
   return test::Eventually([&] {
     for (const auto& thread : std::filesystem::directory_iterator("/proc/self/task")) {
@@ -626,7 +631,7 @@ TEST_F(Assembler, AnOpenScanLeavesInTheSegmentThatItBeganIn) {
   GstSegment segment;
   gst_segment_init(&segment, GST_FORMAT_TIME);
   gst_harness_push_event(h_.get(), gst_event_new_segment(&segment));
-  EXPECT_EQ(Waiting(), 0U);  // the segment is unchanged
+  EXPECT_EQ(Waiting(), 0U);  // an equal segment does not end the scan
   segment.base = GST_SECOND;
   gst_harness_push_event(h_.get(), gst_event_new_segment(&segment));
   ASSERT_EQ(Waiting(), 1U);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Caps that an element refuses cause one error with the reason, however often they come. After
-// accepted caps they cause another error.
+// Tests of caps that an element refuses. They cause one error with the reason, even if they are
+// sent repeatedly. If accepted caps come in between, they cause another error.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -21,7 +21,7 @@ INSTANTIATE_TEST_SUITE_P(All, RefusedCapsOf,
 
 constexpr const char* kCloud = "application/x-pointcloud2,point-step=16,width=10,height=1,";
 
-/// Pushes three buffers. Returns the errors that the element posts.
+/// Pushes three buffers with the caps `caps`. Returns the errors that the element posts.
 std::vector<std::string> ErrorsOf(const char* element, const std::string& caps) {
   const test::Harness h(gst_harness_new(element));
   const test::ElementBus bus(h->element);

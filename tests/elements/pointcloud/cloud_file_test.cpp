@@ -15,7 +15,7 @@ namespace {
 
 using test::Harness;
 
-/// A point of 24 bytes with a gap after z, as in many files of PCL.
+/// A point of 24 bytes, with unused bytes after z as in many files of PCL.
 struct Point {
   float x, y, z;
   std::uint32_t gap;
@@ -39,7 +39,7 @@ const std::vector<Point> kPoints = {{1.5F, -2.25F, 0.1F, 99, 17, 3, 99},
                                     {0, 0, 0, 99, 0, 4, 99},
                                     {-7, 8, 9.5F, 99, 255, 65535, 99}};
 
-/// Returns the file that the element makes of `points`.
+/// Returns the file that the element makes from `points`.
 std::string Encode(const std::string& element, const CloudInfo& info,
                    const std::vector<Point>& points = kPoints) {
   const Harness h(gst_harness_new_parse(element.c_str()));
@@ -124,7 +124,7 @@ TEST(PlyEnc, BinaryIsLittleEndianAndPacked) {
   const std::string end = "end_header\n";
   const std::size_t start = file.find(end) + end.size();
   ASSERT_EQ(file.size() - start, 2U * 18);
-  EXPECT_EQ(file.substr(start, 4), std::string("\0\0\xC0\x3F", 4));  // 1.5
+  EXPECT_EQ(file.substr(start, 4), std::string("\0\0\xC0\x3F", 4));  // the number 1.5
 }
 
 TEST(CloudFiles, AScanWithoutReturnsIsAFileWithoutPoints) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Each property has an effect, and each counter counts.
+// Tests that each property has an effect, and that each counter counts.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -16,12 +16,12 @@ constexpr const char* kCaps =
     "fields=(string)\"x:F32:0,y:F32:4,z:F32:8,intensity:U8:12\",framerate=10/1,frame-id=lidar";
 
 struct Effect {
-  const char* element;  // with the properties that the effect needs
+  const char* element;  // the element, with the properties without which there is no effect
   const char* property;
   const char* value;
 };
 
-/// Eight points from 1 to 8 m away, with a pose.
+/// Returns a cloud with a pose. Its eight points are 1 to 8 m away.
 gst::BufferPtr Cloud() {
   std::vector<std::uint8_t> bytes;
   ByteWriter w(&bytes);
@@ -105,7 +105,8 @@ TEST(Properties, OfAFilterTakeEffectWhileItPlays) {
     gst_util_set_object_arg(G_OBJECT(element.get()), effect.property, effect.value);
     gst_pad_push(h->srcpad, Cloud().release());
     Lines after = trace.Take();
-    for (Lines* lines : {&before, &after}) lines->pop_back();  // the stats, which count the clouds
+    // The statistics, which count the clouds.
+    for (Lines* lines : {&before, &after}) lines->pop_back();
     EXPECT_NE(after, before) << effect.property;
   }
 }

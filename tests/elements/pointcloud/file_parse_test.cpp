@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// pointcloudparse reads files of pcdenc, plyenc and other programs.
+// Tests of pointcloudparse with files of pcdenc, plyenc and other programs.
 #include <gtest/gtest.h>
 
 #include <gst/base/gsttypefindhelper.h>
@@ -33,7 +33,8 @@ TEST_F(FileParse, PcdComesBackAsItWas) {
       EXPECT_EQ(out[i].capture_time, in[i].capture_time);
       EXPECT_EQ(out[i].pts, i * 100 * GST_MSECOND);
       for (std::size_t at = 0; at < in[i].bytes.size(); at += 20) {
-        // Points without a return are NaN in the file.
+        // A point without a return has NaN coordinates in the file, so only its other fields are
+        // compared.
         float x = 0;
         std::memcpy(&x, out[i].bytes.data() + at, sizeof x);
         const std::size_t from = x == x ? 0 : 12;
@@ -64,7 +65,7 @@ TEST(CloudFileTypes, AreFoundInShortFilesOfUnknownSize) {
 TEST_F(FileParse, PlyComesBackWithoutWhatIsMissing) {
   for (const char* encoder : {"plyenc", "plyenc binary=false"}) {
     Write(encoder, "scan%d.ply");
-    // The file is large, so it comes in several buffers.
+    // The file is so large that filesrc outputs it in several buffers.
     const auto read =
         Play("filesrc" + At("scan1.ply") + " ! typefind ! pointcloudparse ! fakesink name=see");
     EXPECT_EQ(read.error, "");
@@ -86,7 +87,7 @@ TEST_F(FileParse, CloudsOfOtherSizesFollowEachOther) {
   const auto read = Play("multifilesrc" + At("a%d.ply") + " ! pointcloudparse ! fakesink name=see");
   EXPECT_EQ(read.error, "");
   ASSERT_EQ(read.buffers.at("see").size(), 2U);
-  EXPECT_EQ(read.buffers.at("see")[0].bytes.size(), 12U);  // doubles became floats
+  EXPECT_EQ(read.buffers.at("see")[0].bytes.size(), 12U);  // doubles were converted to floats
   EXPECT_EQ(read.buffers.at("see")[1].bytes.size(), 24U);
   EXPECT_NE(read.warning, "");  // about the empty file
 }
@@ -112,7 +113,7 @@ TEST_F(FileParse, AFolderPlaysAtTheRateThatIsAskedFor) {
     EXPECT_EQ(out[i].slice.scan_id, i);
     EXPECT_EQ(out[i].slice.slice_count, 1U);
   }
-  EXPECT_GT(out[0].capture_time, kCapture);  // now, or close to it
+  EXPECT_GT(out[0].capture_time, kCapture);  // the current time, or close to it
 }
 
 TEST_F(FileParse, LasKeepsIntensityAndTime) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// pointcloudfilter, alone.
+// A fixture with a pointcloudfilter.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ namespace lidar::gst {
 
 class Filter : public ::testing::Test {
  protected:
-  /// `properties` have the syntax of gst-launch.
+  /// Starts the element. `properties` has the syntax of gst-launch.
   void Start(const std::string& properties, const std::string& caps) {
     const ElementPtr filter(gst_parse_launch(("pointcloudfilter " + properties).c_str(), nullptr));
     h_.reset(gst_harness_new_with_element(filter.get(), "sink", "src"));

@@ -60,7 +60,7 @@ TEST_F(Filter, SlicesKeepTheirPlaceAndModelsTheirBeams) {
   ASSERT_TRUE(Info()->sensor_model);
   EXPECT_EQ(Info()->sensor_model->beams.size(), 1U);
   gst_buffer_unref(gst_harness_pull(h_.get()));
-  // A property that changes takes effect with the next cloud.
+  // A new value of a property takes effect with the next cloud.
   g_object_set(h_->element, "column-step", 2, nullptr);
   ASSERT_EQ(Push(std::vector<std::uint8_t>(96, 1), 8), GST_FLOW_OK);
   EXPECT_FALSE(Info()->sensor_model);
@@ -135,7 +135,8 @@ TEST_F(Filter, SendsCapsOnceWhileTheyStayTheSame) {
   EXPECT_EQ(caps, 1);
 }
 
-// When a pipeline stops, its pads flush one after the other, from the last element on.
+// When a pipeline stops, its elements stop one after another, beginning with the sink. Upstream
+// elements may still push meanwhile.
 TEST_F(Filter, ASinkThatStopsIsNoError) {
   Start("", CloudCaps("x:F32:0,y:F32:4,z:F32:8", 12, 1, 1));
   gst_pad_set_active(h_->sinkpad, FALSE);
@@ -191,7 +192,7 @@ TEST_F(Filter, PutsCloudsWhereTheirPoseSays) {
   std::vector<std::uint8_t> points;
   ByteWriter w(&points);
   for (const float v : {1.0F, 2.0F, 3.0F, 0.0F, 0.0F, 0.0F}) w.LeF32(v);
-  ASSERT_EQ(Push(points), GST_FLOW_OK);  // without a pose
+  ASSERT_EQ(Push(points), GST_FLOW_OK);  // this cloud has no pose
   EXPECT_EQ(gst_harness_buffers_received(h_.get()), 0U);
   GstBuffer* buffer = gst_buffer_new_memdup(points.data(), points.size());
   const GstLidarPose pose{{10, 20, 30}, {0, 0, 1, 0}, GST_LIDAR_TRACKING_OK, {}};
@@ -229,7 +230,8 @@ TEST_F(Filter, HoldsTagsBackThroughAFlushUntilTheFirstCloud) {
                                              "tag", "segment"}));
 }
 
-/// Flushes the element at its tag event, in the middle of the events that it pushes.
+/// Flushes the element when it pushes its tag event, which is in the middle of the events that it
+/// pushes.
 GstPadProbeReturn FlushAtTags(GstPad*, GstPadProbeInfo* info, gpointer harness) {
   if (GST_EVENT_TYPE(gst_pad_probe_info_get_event(info)) != GST_EVENT_TAG) return GST_PAD_PROBE_OK;
   gst_harness_push_event(static_cast<GstHarness*>(harness), gst_event_new_flush_start());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// pointcloudfilter that puts clouds into another frame.
+// Tests of a pointcloudfilter that moves clouds into another frame.
 #include <unistd.h>
 
 #include <atomic>
@@ -16,7 +16,7 @@
 namespace lidar::gst {
 namespace {
 
-/// A thread that does some work once. Tests can see that it sleeps.
+/// A thread that runs a function once. Tests can wait until the thread sleeps.
 class Waiter {
  public:
   explicit Waiter(std::function<void()> work)
@@ -27,7 +27,8 @@ class Waiter {
         }) {}
   ~Waiter() { thread_.join(); }
 
-  /// Waits until the kernel reports that the thread sleeps. Returns false if the thread ends first.
+  /// Waits until the kernel reports that the thread sleeps. Returns false if the thread ends
+  /// before.
   bool AwaitSleep() const {
     while (!done_) {
       std::ifstream stat("/proc/self/task/" + std::to_string(id_) + "/stat");
@@ -46,7 +47,8 @@ class Waiter {
   std::thread thread_;
 };
 
-/// pointcloudfilter, and sources of static and of moving transforms.
+/// A fixture with a pointcloudfilter, a source of static transforms, and a source of moving
+/// transforms.
 class FilterByTransforms : public Filter {
  protected:
   void Start(const std::string& properties, const std::string& frame = "os") {
@@ -99,7 +101,7 @@ TEST_F(FilterByTransforms, CloudsGoToTheTargetFrameAsItIsAtTheirTime) {
   EXPECT_EQ(PulledX(), 2011);
   EXPECT_EQ(FrameOut(), "map");
   EXPECT_EQ(Stat("transforms"), 3U);
-  // The newest transform applies to clouds without a capture time.
+  // For clouds without a capture time, the newest transform applies.
   ASSERT_EQ(Push(std::vector<std::uint8_t>(12, 0)), GST_FLOW_OK);
 }
 
@@ -195,7 +197,7 @@ TEST_F(FilterByTransforms, TakesThePosesOfAnOdometry) {
   push(100);
   EXPECT_EQ(PushAt(100), GST_FLOW_OK);
   EXPECT_EQ(PulledX(), 6);
-  bytes[6] = 0x1C;  // turns 5.0 into 7.0
+  bytes[6] = 0x1C;  // changes the number 5.0 to 7.0
   push(102);
   EXPECT_EQ(PushAt(101), GST_FLOW_OK);
   EXPECT_EQ(PulledX(), 7) << "a pose is of its time";
@@ -209,7 +211,7 @@ TEST_F(FilterByTransforms, WhatIsNoTransformIsCounted) {
   EXPECT_EQ(Stat("transforms"), 0U);
 }
 
-/// With the pose, another filter would move the points a second time.
+/// If the cloud kept its pose, another filter would move the points a second time.
 TEST_F(FilterByTransforms, ACloudInItsTargetFrameHasNoPoseLeft) {
   Start("target-frame=map tf-timeout=0");
   Tell(fixed_.get(), "map", "os", 0, 10);
@@ -272,7 +274,8 @@ TEST_F(FilterByTransforms, CloudsWaitForAStreamOfTransformsThatBeginsAgain) {
   }
 }
 
-/// After a cloud has waited in vain, later clouds do not wait for that transform in the same run.
+/// If a cloud has waited for a transform in vain, later clouds of the same run do not wait for this
+/// transform. In a new run, clouds wait again.
 TEST_F(FilterByTransforms, ASecondRunWaitsAgain) {
   Start("target-frame=map tf-timeout=1000000");
   Tell(moving_.get(), "map", "os", 100, 1);

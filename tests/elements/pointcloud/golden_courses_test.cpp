@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Golden files hold what elements output, send and post in scripted runs.
+// Compares what elements output, send and post in scripted runs with golden files.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -48,7 +48,7 @@ gst::BufferPtr Text(const std::string& text) {
   return gst::BufferPtr(gst_buffer_new_memdup(text.data(), text.size()));
 }
 
-/// Returns `count` points on the x axis, from `first` on.
+/// Returns `count` points on the x axis, one metre apart, beginning at x = `first`.
 gst::BufferPtr Row(std::size_t count, float first) {
   Numbers numbers;
   for (std::size_t i = 0; i < count; ++i) {
@@ -82,7 +82,7 @@ gst::BufferPtr With(gst::BufferPtr buffer, GstBufferFlags flag) {
   return buffer;
 }
 
-/// Clouds of every kind through a filter.
+/// Pushes clouds of every kind through a filter.
 void FilterCourse(Course& c) {
   c.Ask();
   c.Tag();
@@ -117,12 +117,12 @@ void FilterCourse(Course& c) {
   c.Stop();
 }
 
-/// Slices in any order, whole and cut, through an assembler.
+/// Pushes slices in any order through an assembler. Some of them are cut off.
 void AssemblerCourse(Course& c, const std::string& caps, std::size_t points) {
   const auto slice = [&](guint scan, guint index, guint slices = 4) {
     auto made = At(Row(points, static_cast<float>(10 * scan + index)),
                    {100 * scan + 25 * index, 24, {scan, index, slices, 2 * index + 1}});
-    // The times of the first slice do not follow from those of the others.
+    // The times of slice 0 differ from the times that follow from the other slices.
     if (index == 0) GST_BUFFER_PTS(made.get()) += 2 * GST_MSECOND;
     if (index == 0)
       gst_lidar_buffer_set_capture_time(made.get(), (1'003 + 100 * scan) * GST_MSECOND);
@@ -166,7 +166,7 @@ void AssemblerCourse(Course& c, const std::string& caps, std::size_t points) {
   c.End();
 }
 
-/// Clouds from a stream of bytes, whose buffers end anywhere.
+/// Pushes clouds as a stream of bytes. Its buffers may end in the middle of a cloud.
 void ParseBytesCourse(Course& c) {
   c.Ask();
   c.Tag();
@@ -197,7 +197,7 @@ void ParseBytesCourse(Course& c) {
   c.Stop();
 }
 
-/// Clouds that come as files, with times and without.
+/// Pushes clouds in files, with and without timestamps.
 void ParseFilesCourse(Course& c) {
   const std::string ply =
       "ply\nformat ascii 1.0\ncomment capture time [s since 1970-01-01T00:00:00Z]: "
@@ -233,7 +233,7 @@ void ParseFilesCourse(Course& c) {
   c.Push("an odd number of points", At(Row(3, 1), {200}));
 }
 
-/// Clouds into files.
+/// Writes clouds into files.
 void FilesCourse(Course& c) {
   constexpr const char* kFields =
       "x:F32:0,y:F32:4,z:F32:8,a:I8:12,b:U8:13,c:I16:14,d:U16:16,e:I32:20,f:U32:24,g h:F64:28";
@@ -275,7 +275,8 @@ void FilesCourse(Course& c) {
   }
 }
 
-/// Two sensors through a merger. A step ends once the merger has pushed all that it can.
+/// Pushes the clouds of two sensors through a merger. Each step waits until the merger has pushed
+/// all that it can.
 void MergeCourse(Course& c) {
   const Harness second(gst_harness_new_with_element(c.element(), "sink_1", nullptr));
   const auto begin = [&](const std::string& caps) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Scans of several sensors become one cloud.
+// Tests of pointcloudmerge, which merges the scans of several sensors into one cloud.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@ namespace {
 
 class Merge : public Recording {};
 
-/// Returns the number of returns among a cloud's points of 20 bytes.
+/// Returns the number of points of a cloud that have a return. Each point has 20 bytes.
 std::size_t Returns(const Kept& cloud) {
   std::size_t count = 0;
   for (std::size_t at = 0; at < cloud.bytes.size(); at += 20) {
@@ -45,7 +45,7 @@ TEST_F(Merge, TwoSensorsBecomeOneCloudInOneFrame) {
   ASSERT_EQ(merged.size(), 3U);
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t returns = Returns(one[i]);
-    ASSERT_EQ(merged[i].bytes.size(), 2 * 20 * returns);  // both see the same world
+    ASSERT_EQ(merged[i].bytes.size(), 2 * 20 * returns);  // both sensors see the same world
     EXPECT_EQ(merged[i].pts, one[i].pts);
     EXPECT_EQ(merged[i].capture_time, one[i].capture_time);
     for (std::size_t k = 0; k < returns; k += 97)
@@ -73,7 +73,7 @@ TEST_F(Merge, ASensorThatStartsLaterIsJoinedAtItsTurn) {
   gst_pad_set_offset(pad.get(), 300 * GST_MSECOND);
   const auto outcome = p.Run();
   EXPECT_EQ(outcome.error, "");
-  // The first sensor's first three and last two scans have no partner.
+  // The first three and the last two scans of the first sensor have no partner.
   const auto& merged = outcome.buffers.at("see");
   ASSERT_GE(merged.size(), 5U);
   EXPECT_EQ(merged.front().pts, 300 * GST_MSECOND);
@@ -120,7 +120,7 @@ TEST_F(Merge, CloudsWithoutTimesAreAnError) {
             "pointcloudparse adds them.");
 }
 
-/// pointcloudmerge with two pads for clouds of one point.
+/// A fixture with a pointcloudmerge with two pads. Its clouds have one point.
 class MergedByHand : public ::testing::Test {
  protected:
   static constexpr const char* kCaps =
@@ -157,7 +157,7 @@ class MergedByHand : public ::testing::Test {
     for (std::size_t i = 0; i < xs.size(); ++i) EXPECT_FLOAT_EQ(points[3 * i], xs[i]);
   }
 
-  /// Expects that the last gap event so far has this time.
+  /// Expects that the newest gap event begins at this time.
   void ExpectGap(GstClockTime time_ms) {
     GstClockTime time = 0;
     GstClockTime duration = 0;
@@ -205,8 +205,8 @@ TEST_F(MergedByHand, SoDoesAScanWhoseDurationIsZero) {
   ExpectCloud({1, 2}, 100);
 }
 
-/// The element waits for a live sensor until the end of its last cloud plus the latency, also after
-/// a turn in which no sensor saw anything.
+/// The element waits for a live sensor until the end of that sensor's last cloud plus the latency.
+/// It must also do this after a turn in which no sensor saw anything.
 TEST_F(MergedByHand, ALateSensorIsWaitedForInEachTurn) {
   constexpr GstClockTime kLatency = 20 * GST_MSECOND;
   for (GstHarness* h : {first_.get(), second_.get()}) gst_harness_set_upstream_latency(h, kLatency);
@@ -220,7 +220,7 @@ TEST_F(MergedByHand, ALateSensorIsWaitedForInEachTurn) {
   }
 }
 
-/// A gap event keeps downstream from waiting for a cloud.
+/// A gap event tells downstream not to wait for a cloud.
 TEST_F(MergedByHand, ATurnInWhichNoSensorSeesAnythingIsAGap) {
   for (const float x : {1.F, NAN, 1.F}) {
     Push(first_, x, 100);
@@ -241,7 +241,7 @@ TEST_F(MergedByHand, NoGapComesBeforeTheFirstCloud) {
     EXPECT_NE(GST_EVENT_TYPE(event.get()), GST_EVENT_GAP);
 }
 
-/// Both pads get gaps, as pointcloudfilter sends them in place of empty clouds.
+/// Both pads receive gap events. pointcloudfilter sends such events instead of empty clouds.
 TEST_F(MergedByHand, ATurnOfGapsIsAGapOfTheEarliersTime) {
   const auto push_gap = [](const Harness& h, GstClockTime time_ms) {
     ASSERT_TRUE(gst_harness_push_event(
@@ -284,7 +284,7 @@ TEST_F(MergedByHand, AScanBehindOneOfAnEarlierTurnHasItsOwnTime) {
   gst_harness_set_src_caps_str(late.get(), kCaps);
   for (GstHarness* h : {first_.get(), second_.get(), late.get()})
     gst_harness_set_upstream_latency(h, 20 * GST_MSECOND);
-  gst_harness_query_latency(first_.get());  // a pad takes two clouds once it is known to be live
+  gst_harness_query_latency(first_.get());  // only a pad that is known to be live queues two clouds
   Push(first_, 1, 100);
   Push(first_, 2, 200);
   Push(second_, 3, 200);
@@ -360,7 +360,7 @@ TEST_F(MergedByHand, ASecondRunForgetsTheFieldsOfTheFirst) {
   gst_element_set_state(element_.get(), GST_STATE_NULL);
   gst_element_set_state(element_.get(), GST_STATE_PLAYING);
   for (GstHarness* h : {first_.get(), second_.get()}) {
-    gst_pad_set_active(h->srcpad, FALSE);  // drops the caps
+    gst_pad_set_active(h->srcpad, FALSE);  // makes the pad forget its caps
     gst_pad_set_active(h->srcpad, TRUE);
     gst_pad_push_event(h->srcpad, gst_event_new_stream_start("run"));
   }

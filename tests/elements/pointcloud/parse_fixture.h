@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// pointcloudparse after a source of bytes.
+// A fixture with a pointcloudparse after a source of bytes.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ inline BufferPtr Bytes(gsize size, guint8 value = 7) {
 
 class Parse : public ::testing::Test {
  protected:
-  /// Starts the element after a source of bytes, such as a file.
+  /// Starts the element. The source outputs bytes, as a file does.
   void Start(const std::string& caps, const char* element = "pointcloudparse") {
     h_.reset(gst_harness_new_parse(element));
     gst_harness_play(h_.get());

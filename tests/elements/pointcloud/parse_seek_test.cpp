@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Seeks and segments of pointcloudparse.
+// Tests of seeks and segments of pointcloudparse.
 #include <atomic>
 #include <cstdio>
 #include <fstream>
@@ -11,7 +11,8 @@
 namespace lidar::gst {
 namespace {
 
-/// A playing source of bytes that can seek: it pushes two more clouds before it obeys a seek.
+/// A fixture with a playing source of bytes that supports seeks. The source pushes two more clouds
+/// before it performs a seek.
 class ParseUnderWay : public Parse {
  protected:
   static constexpr gsize kCloud = 160;
@@ -44,8 +45,8 @@ class ParseUnderWay : public Parse {
     self->PushBytesFrom(static_cast<guint64>(start), gst_event_get_seqnum(raw));
     return TRUE;
   }
-  guint64 from_ = 0;  // start of the last seek
-  gint64 to_ = 0;     // stop of the last seek
+  guint64 from_ = 0;  // start of the last seek event
+  gint64 to_ = 0;     // stop of the last seek event
   void PushBytesFrom(guint64 start, guint32 seqnum) {
     GstSegment segment;
     gst_segment_init(&segment, GST_FORMAT_BYTES);
@@ -64,7 +65,7 @@ class ParseUnderWay : public Parse {
     while (BufferPtr next{gst_harness_try_pull(h_.get())}) last = std::move(next);
     return last;
   }
-  /// Returns the running time of the last cloud.
+  /// Returns the running time of the last cloud that was output.
   GstClockTime RunningTime() {
     const BufferPtr last = LastCloud();
     const EventPtr event(gst_pad_get_sticky_event(h_->sinkpad, GST_EVENT_SEGMENT, 0));
@@ -171,7 +172,7 @@ TEST_F(ParseUnderWay, ASeekFromHereRepeatsNoCloud) {
   PushClouds(3);
   ASSERT_TRUE(Seek(GST_SEEK_FLAG_NONE, 0, GST_SEEK_TYPE_NONE));
   EXPECT_EQ(RunningTime(), 400 * GST_MSECOND);
-  PushClouds(4);  // the bytes restart after the third cloud
+  PushClouds(4);  // the source sends the bytes after the third cloud again
   EXPECT_EQ(gst_harness_buffers_in_queue(h_.get()), 2U);
   EXPECT_EQ(RunningTime(), 600 * GST_MSECOND);
   ASSERT_TRUE(Seek(GST_SEEK_FLAG_FLUSH, 0, GST_SEEK_TYPE_NONE));
@@ -181,7 +182,8 @@ TEST_F(ParseUnderWay, ASeekFromHereRepeatsNoCloud) {
   EXPECT_EQ(GST_BUFFER_OFFSET_END(last.get()), 8U);
 }
 
-/// Frame rates. With some of them, times of clouds are not whole nanoseconds.
+/// The parameter is a frame rate. With some frame rates, the times of clouds are not whole
+/// nanoseconds.
 class ParseAnyCloud : public ParseUnderWay,
                       public ::testing::WithParamInterface<std::pair<guint64, guint64>> {};
 TEST_P(ParseAnyCloud, IsFoundByItsTimeAndKnowsItsOffset) {
@@ -190,7 +192,7 @@ TEST_P(ParseAnyCloud, IsFoundByItsTimeAndKnowsItsOffset) {
       "application/x-pointcloud2,width=5,height=2,point-step=16,fields=(string)\"x:F32:0\","
       "framerate=" +
       std::to_string(n) + "/" + std::to_string(d));
-  PushClouds(1);  // after that the element has the size of a cloud
+  PushClouds(1);  // from now on the element knows the size of a cloud
   const auto time_of = [n = n, d = d](guint64 cloud) {
     return gst_util_uint64_scale(cloud, d * GST_SECOND, n);
   };
@@ -241,14 +243,15 @@ TEST_F(ParseUnderWay, BuffersThatAreCloudsGoOnWhereTheLastCloudEnded) {
   EXPECT_EQ(RunningTime(), 300 * GST_MSECOND);
   PushClouds(2);
   EXPECT_EQ(RunningTime(), 500 * GST_MSECOND);
-  // At another rate a cloud with the same number has another time.
+  // At another frame rate, the cloud with the same number has another time.
   PushCaps("application/x-pointcloud2,point-step=16,fields=(string)\"x:F32:0\",framerate=20/1");
   PushBytesFrom(0, 4712);
   PushClouds(2);
   EXPECT_EQ(RunningTime(), 650 * GST_MSECOND);
 }
 
-/// A pipeline in PAUSED with a file of ten clouds at 10 Hz. A cloud has 8 points with its number.
+/// A paused pipeline with a file of ten clouds at 10 Hz. Each cloud has 8 points, which contain the
+/// number of the cloud.
 class ParseSeek : public ::testing::Test {
  protected:
   explicit ParseSeek(const std::string& behind = "") {
@@ -293,7 +296,7 @@ class ParseSeek : public ::testing::Test {
                             static_cast<GstSeekFlags>(flags), GST_SEEK_TYPE_SET,
                             static_cast<gint64>(start), GST_SEEK_TYPE_SET, stop) != FALSE;
   }
-  /// Plays until the message. Returns the numbers of the clouds until then.
+  /// Plays until a message of this type. Returns the numbers of the clouds that were played.
   std::vector<int> PlayTo(GstMessageType type) {
     clouds_.clear();
     times_.clear();
@@ -305,13 +308,14 @@ class ParseSeek : public ::testing::Test {
     return clouds_;
   }
 
-  /// Waits for the end of the segment: the source posts its message before it pushes the event.
+  /// Waits for the event that ends the segment, because the source posts its message before it
+  /// pushes the event.
   gint64 AwaitEndOfSegment() const {
     test::Eventually([&] { return end_of_segment_ >= 0; });
     return end_of_segment_;
   }
 
-  /// Returns the running time at which the current segment begins.
+  /// Returns the running time at the start of the current segment.
   GstClockTime Base() {
     const ElementPtr sink(gst_bin_get_by_name(GST_BIN(pipeline_.get()), "sink"));
     const PadPtr pad(gst_element_get_static_pad(sink.get(), "sink"));
@@ -364,7 +368,7 @@ TEST_F(ParseSeek, ASegmentEndsNoLaterThanItsStop) {
   ASSERT_TRUE(Seek(GST_SEEK_FLAG_FLUSH | GST_SEEK_FLAG_SEGMENT, 0, 250 * GST_MSECOND));
   EXPECT_EQ(PlayTo(GST_MESSAGE_SEGMENT_DONE), (std::vector<int>{0, 1, 2}));
   EXPECT_EQ(AwaitEndOfSegment(), gint64{250 * GST_MSECOND});
-  // The next segment continues at the running time of the end.
+  // The next segment begins at the running time at which this segment ended.
   ASSERT_TRUE(Seek(GST_SEEK_FLAG_SEGMENT, 800 * GST_MSECOND));
   EXPECT_EQ(PlayTo(GST_MESSAGE_SEGMENT_DONE), (std::vector<int>{8, 9}));
   EXPECT_EQ(Base(), 250 * GST_MSECOND);

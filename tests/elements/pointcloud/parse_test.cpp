@@ -70,7 +70,8 @@ TEST_F(Parse, ANewFrameRateGoesOnWhereTheLastCloudEnded) {
   for (guint i = 0; i < 3; ++i) EXPECT_EQ(running_time(), (300 + i * 50) * GST_MSECOND);
 }
 
-/// A source in time format gets seeks by time, a source in bytes gets seeks by bytes.
+/// If a source sends a segment in time, it receives seeks in time. If it sends a segment in bytes,
+/// it receives seeks in bytes.
 TEST_F(Parse, ASeekReachesTheSourceInTheFormatThatItSends) {
   for (const GstFormat format : {GST_FORMAT_TIME, GST_FORMAT_BYTES}) {
     Start(std::string(kKitti) + ",width=10");
@@ -111,7 +112,8 @@ TEST_F(Parse, ACloudOfSeveralBuffersHasTheTimeOfThatInWhichItBegins) {
     GST_BUFFER_PTS(piece.get()) = 5 * GST_SECOND + ms * GST_MSECOND;
     ASSERT_EQ(Push(std::move(piece)), GST_FLOW_OK);
   }
-  ASSERT_EQ(Push(Bytes(340)), GST_FLOW_OK);  // without a time: at the frame rate
+  // Has no timestamp, so its clouds follow at the frame rate.
+  ASSERT_EQ(Push(Bytes(340)), GST_FLOW_OK);
   for (const guint ms : {0U, 70U, 140U, 240U})
     EXPECT_EQ(GST_BUFFER_PTS(Pull().get()), 5 * GST_SECOND + ms * GST_MSECOND);
 }
@@ -159,7 +161,7 @@ TEST_F(Parse, CutsAStreamOfAnySplitWhereTheCapsGiveTheWidth) {
   const BufferPtr second = Pull();
   EXPECT_EQ(gst_buffer_get_size(first.get()), 160U);
   const BufferMap map(second.get(), GST_MAP_READ);
-  EXPECT_EQ(map.data()[0], 3);  // byte 160 of the stream
+  EXPECT_EQ(map.data()[0], 3);  // this is byte 160 of the stream
 }
 
 TEST_F(Parse, WarnsOfWhatIsLeftOverAtTheEnd) {
@@ -292,7 +294,7 @@ TEST(ParseFile, AFileWithoutAWidthIsOneCloud) {
 TEST(ParseFile, AFileThatIsTooLargeForOneCloudIsAnErrorAtOnce) {
   const std::string path = ::testing::TempDir() + "large.bin";
   std::ofstream(path, std::ios::binary) << "a";
-  std::filesystem::resize_file(path, std::uintmax_t{1} << 31);  // sparse
+  std::filesystem::resize_file(path, std::uintmax_t{1} << 31);  // the file is sparse
   const gst::ElementPtr pipeline(gst_parse_launch(
       ("filesrc location=" + path + " ! " + kKitti + " ! pointcloudparse ! fakesink").c_str(),
       nullptr));

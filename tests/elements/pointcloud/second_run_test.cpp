@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// An element that was stopped or flushed behaves as a new one.
+// Tests that an element that was stopped or flushed behaves like a new one.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -17,7 +17,7 @@ constexpr const char* kColumns =
     "application/x-pointcloud2,width=8,height=2,point-step=12,"
     "fields=(string)\"x:F32:0,y:F32:4,z:F32:8\",framerate=10/1,is-bigendian=false";
 
-/// Returns two points on the x axis.
+/// Returns a cloud of two points on the x axis.
 gst::BufferPtr Points(float one, float two) {
   std::vector<std::uint8_t> bytes;
   ByteWriter w(&bytes);
@@ -42,7 +42,8 @@ gst::BufferPtr At(gst::BufferPtr buffer, GstClockTime ms, guint scan, guint slic
 
 void Push(GstHarness* h, gst::BufferPtr buffer) { gst_pad_push(h->srcpad, buffer.release()); }
 
-/// `run` leaves much state behind: incomplete clouds, warnings, counts.
+/// A case of the tests below. `run` leaves much state behind: incomplete clouds, warnings, and
+/// counts.
 struct Case {
   const char* name;
   const char* element;
@@ -52,7 +53,7 @@ struct Case {
 
 void FilterClouds(GstHarness* h) {
   g_object_set(h->element, "max-range", 5.0, nullptr);
-  Push(h, At(Points(1, 9), 0, 0, 0, 1));  // has no pose
+  Push(h, At(Points(1, 9), 0, 0, 0, 1));  // this cloud has no pose
   for (const double range : {5.0, 3.0}) {
     g_object_set(h->element, "max-range", range, nullptr);
     auto cloud = At(Points(2, 4), 100, 1, 0, 1);
@@ -68,14 +69,14 @@ void FilterToAFrame(GstHarness* h) {
 
 void ParseClouds(GstHarness* h) {
   Push(h, Bytes(24, 1));
-  Push(h, Bytes(0, 0));  // gives a warning, and the next cloud follows a gap
+  Push(h, Bytes(0, 0));  // causes a warning, and a gap before the next cloud
   Push(h, Bytes(24, 2));
   Push(h, Bytes(0, 0));
 }
 
 void ParseHalves(GstHarness* h) {
   for (guint8 i = 1; i < 4; ++i) Push(h, Bytes(16, i));
-  Push(h, Bytes(20, 9));  // the last cloud is cut
+  Push(h, Bytes(20, 9));  // the last cloud is cut off
 }
 
 void ParseFiles(GstHarness* h) {
@@ -88,14 +89,14 @@ void ParseFiles(GstHarness* h) {
 
 void AssembleScans(GstHarness* h) {
   for (guint i = 0; i < 4; ++i) Push(h, At(Bytes(192, 1), 25 * i, 7, i, 4));
-  Push(h, At(Bytes(192, 2), 25, 7, 1, 4));  // late
-  Push(h, At(Bytes(99, 2), 100, 8, 0, 4));  // of another size
+  Push(h, At(Bytes(192, 2), 25, 7, 1, 4));  // this slice is late
+  Push(h, At(Bytes(99, 2), 100, 8, 0, 4));  // this slice has another size
   for (guint i : {0U, 1U, 1U}) Push(h, At(Bytes(192, 3), 100 + 25 * i, 8, i, 4));
-  Push(h, At(Bytes(192, 4), 200, 9, 0, 4));  // leaves scans 8 and 9 incomplete
+  Push(h, At(Bytes(192, 4), 200, 9, 0, 4));  // scans 8 and 9 stay incomplete
 }
 
 void WriteFiles(GstHarness* h) {
-  for (guint i = 0; i < 2; ++i) Push(h, At(Points(1, 2), 50 * i, 3, i, 2));  // gives a warning
+  for (guint i = 0; i < 2; ++i) Push(h, At(Points(1, 2), 50 * i, 3, i, 2));  // causes a warning
 }
 
 class SecondRun : public ::testing::TestWithParam<Case> {
@@ -132,7 +133,7 @@ TEST_P(SecondRun, GivesTheSameCloudsBehindAFlush) {
   trace_->Take();
   Run();
   Lines behind = trace_->TakeBuffers();
-  // The first buffer after a flush may be marked as a discontinuity.
+  // The first buffer after a flush may have the flag DISCONT, so its flags are not compared.
   for (Lines* lines : {&first, &behind}) {
     if (lines->empty()) continue;
     std::string& line = lines->front();
@@ -158,7 +159,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"PlyFiles", "plyenc", kPoints, WriteFiles}),
     [](const auto& which) { return which.param.name; });
 
-/// A file of one point. Its type is in `caps`, or has to be found in the content if `caps` is null.
+/// A file with one point. If `caps` is null, the type of the file must be found in its content.
 struct FileCase {
   const char* name;
   const char* caps;
@@ -197,7 +198,7 @@ class FileAfterAnother : public ::testing::Test {
     for (int i = 0; i < 2; ++i)
       Push(h_.get(), gst::BufferPtr(gst_buffer_new_memdup(which.file.data(), which.file.size())));
   }
-  /// Stops the element and the source, whose caps would stay.
+  /// Stops the element, and also the source, which would otherwise keep its caps.
   void StopAll() {
     trace_->Stop();
     gst_pad_set_active(h_->srcpad, FALSE);
@@ -240,7 +241,8 @@ TEST_F(FileAfterAnother, IsReadAsByANewElementInASecondRun) {
 TEST_F(FileAfterAnother, IsReadAsByANewElementInASecondStream) {
   for (const FileCase& first : FileCases())
     for (const FileCase& second : FileCases()) {
-      if ((second.caps == nullptr) != (first.caps == nullptr)) continue;  // caps stay
+      // The caps of the first file would stay.
+      if ((second.caps == nullptr) != (first.caps == nullptr)) continue;
       SCOPED_TRACE(std::string(second.name) + " behind " + first.name);
       PlayFile(second);
       const Lines alone = BytesOf(trace_->TakeBuffers());
@@ -253,7 +255,7 @@ TEST_F(FileAfterAnother, IsReadAsByANewElementInASecondStream) {
     }
 }
 
-/// A source that has the size of its file, and reads it in blocks.
+/// A source that knows the size of its file, and outputs the file in blocks.
 class FileInBlocks : public FileAfterAnother {
  protected:
   FileInBlocks() {
@@ -298,7 +300,7 @@ TEST_F(FileInBlocks, IsReadToItsEndWhateverTheSizeOfTheOneBefore) {
     }
 }
 
-/// Two points in each kind of file.
+/// Each kind of file contains the same two points.
 TEST_F(FileAfterAnother, IsTheSameCloudInEveryEncoding) {
   std::vector<std::uint8_t> little;
   std::vector<std::uint8_t> big;

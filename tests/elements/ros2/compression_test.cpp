@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Clouds as the plugins of point_cloud_transport pack them.
+// Tests of clouds that are compressed as the plugins of point_cloud_transport do it.
 #include <draco/compression/encode.h>
 #include <draco/point_cloud/point_cloud_builder.h>
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ ByteView ViewOf(const Bytes& bytes) { return {bytes.data(), bytes.size()}; }
 constexpr std::uint32_t kStep = 26;
 constexpr std::uint32_t kRow = 500;
 
-/// A cloud as Hesai's driver publishes it; points 1 and 2 are the same.
+/// A fixture with a cloud like those that Hesai's driver publishes. Its points 1 and 2 are equal.
 class CompressedClouds : public ::testing::TestWithParam<CloudCompression> {
  protected:
   CompressedClouds() {
@@ -186,7 +186,7 @@ TEST_P(CompressedClouds, ThatAreDamagedAreRefused) {
     EXPECT_FALSE(Decompress(shorter, &why)) << cut;
     EXPECT_EQ(why, "its compressed data are damaged");
   }
-  // Damaged data may be accepted, but never give more points.
+  // Damaged data may be accepted, but must never result in more points.
   std::mt19937 random(7);
   for (int round = 0; round < 2'000; ++round) {
     Bytes data(whole->cloud.data.begin(), whole->cloud.data.end());

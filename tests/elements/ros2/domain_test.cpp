@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The DDS domains of a process: which code makes and ends them, and their configuration.
+// Tests of the DDS domains of a process: which code makes and deletes them, and their
+// configuration.
 #include "ext/ros2/domain.h"
 
 #include <dds/dds.h>
@@ -17,7 +18,7 @@
 namespace lidar::dds {
 namespace {
 
-/// Sets variables of the environment during its lifetime.
+/// Sets environment variables, and restores their old values at the end of the lifetime.
 class Variables {
  public:
   using Values = std::map<std::string, std::string>;
@@ -39,7 +40,7 @@ class Variables {
   std::map<std::string, std::optional<std::string>> before_;
 };
 
-// No element uses this domain.
+// A domain that no element uses.
 constexpr std::uint32_t kDomain = 231;
 
 std::unique_ptr<Domain> Join() {
@@ -49,7 +50,8 @@ std::unique_ptr<Domain> Join() {
   return domain;
 }
 
-/// Returns true if the domain did not exist: tries to make it, and deletes it again.
+/// Returns true if the domain does not exist. To find this out, makes the domain and deletes it
+/// again.
 bool IsFree() {
   const dds_entity_t made = dds_create_domain(kDomain, "");
   if (made > 0) dds_delete(made);

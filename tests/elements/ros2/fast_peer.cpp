@@ -23,7 +23,8 @@
 #include <type_traits>
 
 #ifdef __SANITIZE_ADDRESS__
-/// Fast DDS 2.9.1 deletes an object with another size than that of its allocation.
+/// Switches off a check of AddressSanitizer, because Fast DDS 2.9.1 deletes an object with another
+/// size than that of its allocation.
 extern "C" const char* __asan_default_options() { return "new_delete_type_mismatch=0"; }
 #endif
 
@@ -36,7 +37,8 @@ using eprosima::fastcdr::FastBuffer;
 using eprosima::fastrtps::rtps::InstanceHandle_t;
 using eprosima::fastrtps::rtps::SerializedPayload_t;
 
-/// Out and In are called in the same way: Out writes the value, and In reads it.
+/// Out writes a value, and In reads it. Both are called in the same way, so one function can
+/// describe a message for both.
 struct Out {
   Cdr& cdr;
   template <class T>
@@ -136,7 +138,7 @@ std::size_t SizeOf(const Message&) {
   return 8192;
 }
 
-/// Type support without generated code.
+/// The type support of a message, without generated code.
 template <class Message>
 class PeerType : public TopicDataType {
  public:
@@ -205,7 +207,7 @@ std::string ToText(const Octets& octets) {
 
 }  // namespace
 
-/// Notes the endpoints and participants that discovery finds.
+/// Stores the endpoints and participants that discovery finds.
 class DiscoveryListener : public DomainParticipantListener {
  public:
   void on_publisher_discovery(DomainParticipant*,
@@ -271,7 +273,7 @@ struct FastPeer::Impl {
 };
 
 FastPeer::FastPeer(std::uint32_t domain) : impl_(std::make_unique<Impl>()) {
-  // If two peers are in one process, Fast DDS 2.9.1 may call a deleted reader.
+  // If two peers are in the same process, Fast DDS 2.9.1 may otherwise call a deleted reader.
   eprosima::fastrtps::LibrarySettingsAttributes settings;
   settings.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
   eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(settings);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A ROS 2 node of another maker: eProsima's Fast DDS and Fast CDR share no code with the tested
+// A ROS 2 node that is based on eProsima's Fast DDS and Fast CDR. It shares no code with the tested
 // elements.
 #pragma once
 #include <array>
@@ -68,12 +68,12 @@ struct PeerGraph {
   std::vector<std::uint8_t> participant;
   std::vector<PeerGraphNode> nodes;
 };
-/// A message with its encapsulation header, and any content.
+/// A message with its encapsulation header. Its content may be invalid.
 struct PeerBytes {
   std::vector<std::uint8_t> bytes;
 };
 
-/// An endpoint of another participant, as discovery describes it.
+/// An endpoint of another participant, as discovery reports it.
 struct PeerEndpoint {
   std::string topic;
   std::string type;
@@ -81,29 +81,31 @@ struct PeerEndpoint {
   std::vector<std::uint8_t> guid;
 };
 
-/// A node that uses the loopback interface only.
+/// A node that uses only the loopback interface.
 class FastPeer {
  public:
   explicit FastPeer(std::uint32_t domain);
   ~FastPeer();
 
   enum class Qos { kBestEffort, kReliable, kReliableTransient };
-  /// `type` is the name in DDS; Message is one of the structs above.
+  /// Subscribes to a topic. `type` is the name of the type in DDS, and Message is one of the
+  /// structs above.
   template <class Message>
   void Subscribe(const std::string& topic, const std::string& type, Qos qos);
   template <class Message>
   void Advertise(const std::string& topic, const std::string& type, Qos qos);
 
-  /// Returns true once a peer matches.
+  /// Waits until an endpoint of another participant matches. Returns false if that takes longer
+  /// than `timeout`.
   bool WaitForMatch(std::chrono::milliseconds timeout);
   template <class Message>
   bool Publish(const Message& message);
-  /// Takes the next message; returns false if none comes.
+  /// Waits for the next message. Returns false if none arrives within `timeout`.
   template <class Message>
   bool Take(Message* message, std::chrono::milliseconds timeout);
 
-  /// Returns the writers and readers that discovery has found so far; then the participants' user
-  /// data.
+  /// Returns the writers and readers that discovery has found so far. participants() returns the
+  /// user data of the participants.
   std::vector<PeerEndpoint> endpoints() const;
   std::vector<std::string> participants() const;
   std::vector<std::uint8_t> guid() const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Golden files hold what ros2sink and ros2src publish, output and post in scripted runs.
+// Compares what ros2sink and ros2src publish, output and post in scripted runs with golden files.
 #include "tests/support/golden_course.h"
 
 #include "src/base/crc.h"
@@ -17,7 +17,7 @@ std::string CapsTextOf(const PeerCloud& cloud, const char* extra = "") {
 
 gst::BufferPtr BufferOf(const PeerCloud& cloud) { return gst::BufferPtr(CloudBuffer(cloud)); }
 
-/// Notes the next message that a subscriber takes.
+/// Waits for the next message of a subscriber, and notes it.
 void NoteReceived(Course& c, FastPeer* peer) {
   PeerCloud cloud;
   ASSERT_TRUE(peer->Take(&cloud, kPatience));
@@ -57,7 +57,8 @@ void Ros2SinkCourse(Course& c) {
   c.Gap(0, GST_MSECOND);
   c.End();
   c.Stop();
-  peer.reset();  // the element could find the peer before the course notes the first figures
+  // Otherwise the element could find the peer before the course notes the first statistics.
+  peer.reset();
   c.Begin(CapsTextOf(cloud));
   subscribe();
   push("in a second run", BufferOf(cloud));
@@ -72,10 +73,12 @@ void Ros2SrcCourse(Course& c) {
   std::unique_ptr<FastPeer> good;
   std::unique_ptr<FastPeer> bad;
   PeerBytes damaged{std::vector<std::uint8_t>(40, 0xFF)};
-  damaged.bytes[0] = damaged.bytes[2] = damaged.bytes[3] = 0;  // CDR, little-endian
+  // Encapsulation header: CDR, little-endian.
+  damaged.bytes[0] = damaged.bytes[2] = damaged.bytes[3] = 0;
   damaged.bytes[1] = 1;
   std::size_t broken = 0;
-  // The element posts the warning after it has counted, so the course notes it with the next cloud.
+  // The element counts first, and posts the warning later. Therefore the golden file has the
+  // warning together with the next cloud.
   const auto breaks = [&] {
     EXPECT_TRUE(bad->Publish(damaged));
     c.AwaitStat("messages-damaged", ++broken);

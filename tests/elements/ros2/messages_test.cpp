@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Conversions from and to messages, without a network.
+// Tests of conversions between buffers and messages, without a network.
 #include <gtest/gtest.h>
 
 #include "ext/ros2/message_reader.h"
@@ -28,7 +28,7 @@ class CloudMessages : public ::testing::Test {
     cloud_.data = AsView(points);
     return reader_.Read(AsView(cdr::WritePointCloud2(cloud_)));
   }
-  /// Returns a field of the new caps; empty without new caps.
+  /// Returns the field `name` of the reader's new caps, or an empty string if it has no new caps.
   std::string NewField(const char* name) {
     const CapsPtr caps = reader_.TakeNewCaps();
     if (!caps) return "";
@@ -44,7 +44,7 @@ class CloudMessages : public ::testing::Test {
                           ++asked_;
                           return CapsPtr(wanted_ ? gst_caps_ref(wanted_.get()) : nullptr);
                         }};
-  int asked_ = 0;  // number of queries for the caps of downstream
+  int asked_ = 0;  // number of times that the reader asked for downstream's caps
 };
 
 TEST_F(CloudMessages, HaveNewCapsWhereAnythingOfThemChanges) {
@@ -98,20 +98,20 @@ TEST_F(CloudMessages, MayNameAFrameThatIsNoText) {
   EXPECT_TRUE(g_utf8_validate(NewField("frame-id").c_str(), -1, nullptr));
 }
 
-/// A cloud as a driver publishes it.
+/// A cloud with the layout that a driver publishes.
 struct Driver {
   const char* name;
   std::uint32_t width, height;
-  std::vector<cdr::RosField> fields;  // after x, y and z
+  std::vector<cdr::RosField> fields;  // the fields after x, y and z
   std::uint32_t point_step;
   bool is_dense;
-  const char* caps;  // of the fields
+  const char* caps;  // the fields as they are in caps
 };
 class DriverClouds : public ::testing::TestWithParam<Driver> {};
 
 constexpr std::uint8_t kU8 = 2, kU16 = 4, kU32 = 6, kF32 = 7, kF64 = 8;
 
-/// Two points, all bytes different.
+/// The cloud has two points. Each byte has a different value.
 TEST_P(DriverClouds, KeepTheirFields) {
   const Driver& d = GetParam();
   cdr::PointCloud2 cloud;
@@ -204,7 +204,7 @@ INSTANTIATE_TEST_SUITE_P(
                "ring:U16:26,ambient:U16:28,range:U32:32"}),
     [](const auto& made) { return made.param.name; });
 
-/// The buffer of a message, and a text of its caps.
+/// The buffer that was made from a message, and its caps as text.
 struct Taken {
   BufferPtr buffer;
   std::string caps;

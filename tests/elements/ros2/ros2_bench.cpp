@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Costs of ros2src and ros2sink: processor time, latency and loss, with a peer in another process.
-// Run by hand; docs/results/ecosystem.md has the figures.
+// Measures the processor time, latency and loss of ros2src and ros2sink, with a peer in another
+// process. This program is run by hand; docs/results/ecosystem.md has the figures.
 #include <gst/gst.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -41,7 +41,7 @@ double CpuSeconds() {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-/// The counts of one side.
+/// The counts and latencies of one receiving process.
 struct Report {
   unsigned taken = 0;
   unsigned wrong = 0;
@@ -74,7 +74,7 @@ std::string Properties(const Arguments& a, const char* element) {
          " qos=" + (a.reliable ? "reliable" : "sensor-data");
 }
 
-/// Takes clouds until no more come.
+/// Receives clouds until no more clouds arrive.
 void Receive(const Arguments& a, bool fast, const PeerCloud& sent, const char* who) {
   Report report;
   if (fast) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Helpers of the tests of ros2src and ros2sink: a domain for each program, clouds, pipelines.
+// Functions for the tests of ros2src and ros2sink: a domain for each program, clouds, and
+// pipelines.
 #pragma once
 #include <gio/gio.h>
 #include <gtest/gtest.h>
@@ -27,9 +28,10 @@ namespace lidar::test {
 
 constexpr const char* kCloudType = "sensor_msgs::msg::dds_::PointCloud2_";
 
-/// Returns a domain that only this program has, until it ends. Domains 1 to 9 have the UDP ports
-/// 7650 to 9899: below those that the kernel assigns and those of other tests. A TCP socket with
-/// the number of a domain's first UDP port marks the domain as taken.
+/// Returns a domain that only this program uses until it ends. Domains 1 to 9 use the UDP ports
+/// 7650 to 9899. These numbers are below the ports that the kernel assigns, and below those of
+/// other tests. To mark a domain as taken, binds a TCP socket to the number of the domain's first
+/// UDP port.
 inline std::uint32_t TestDomain() {
   using Object = std::unique_ptr<void, decltype(&g_object_unref)>;
   static const Object mark(
@@ -47,8 +49,8 @@ inline std::uint32_t TestDomain() {
   return domain;
 }
 
-/// Returns points of 24 bytes: x, y, z, intensity, a time and a range. The bytes are random numbers
-/// of `seed`.
+/// Returns a cloud whose points have 24 bytes: x, y, z, intensity, a time and a range. The bytes
+/// are random numbers that depend on `seed`.
 inline PeerCloud TestCloud(std::uint32_t width, std::uint32_t height, unsigned seed = 1) {
   PeerCloud cloud;
   cloud.header = {1'700'000'000 + static_cast<std::int32_t>(seed), 123'456'789, "os_lidar"};
@@ -79,7 +81,7 @@ inline gst::CapsPtr CloudCaps(const PeerCloud& cloud, const char* extra = "") {
   return gst::CapsPtr(gst_caps_from_string(text));
 }
 
-/// Returns a buffer with the cloud's points and time.
+/// Returns a buffer with the points and the time of the cloud.
 inline GstBuffer* CloudBuffer(const PeerCloud& cloud) {
   GstBuffer* buffer = gst_buffer_new_memdup(cloud.data.data(), cloud.data.size());
   gst_lidar_buffer_set_capture_time(
@@ -92,7 +94,7 @@ inline std::vector<std::uint8_t> BytesOf(GstBuffer* buffer) {
   return {map.view().begin(), map.view().end()};
 }
 
-/// An element in TestDomain(), alone or with elements after it.
+/// A fixture with an element in TestDomain(), alone or with elements after it.
 class Ros2Test : public ::testing::Test {
  protected:
   void Start(const std::string& element, const std::string& properties,
@@ -106,7 +108,8 @@ class Ros2Test : public ::testing::Test {
                                        : GST_ELEMENT(gst_object_ref(h_->element)));
     SetPlaying(h_.get());
   }
-  /// Stops and starts the element. Sends it the events of a new stream if it is a sink.
+  /// Stops the element and starts it again. If the element is a sink, sends it the events of a new
+  /// stream.
   void StartAgain(const char* caps = nullptr) {
     gst_element_set_state(h_->element, GST_STATE_NULL);
     while (NextComplaint(0) != "") continue;
@@ -116,7 +119,7 @@ class Ros2Test : public ::testing::Test {
     gst_harness_set_src_caps_str(h_.get(), caps);
   }
   gst::BufferPtr Pull() { return gst::BufferPtr(gst_harness_pull(h_.get())); }
-  /// Returns a field of the received caps, as text.
+  /// Returns a field of the caps that the harness received, as text.
   std::string Field(const char* name) {
     const gst::CapsPtr caps(gst_pad_get_current_caps(h_->sinkpad));
     const GValue* value = gst_structure_get_value(gst_caps_get_structure(caps.get(), 0), name);
@@ -126,19 +129,21 @@ class Ros2Test : public ::testing::Test {
     return text.get();
   }
   guint64 Stat(const char* name) { return StatOf(ros_.get(), name); }
-  /// Waits until a counter is at least `least`. Returns false if that takes too long.
+  /// Waits until the counter `name` is at least `least`. Returns false if that takes too long.
   bool WaitForStat(const char* name, guint64 least) {
     return Eventually([&] { return Stat(name) >= least; });
   }
   bool WaitForNone(const char* name) {
     return Eventually([&] { return Stat(name) == 0; });
   }
-  /// Returns the text of the next warning or error, or nothing.
+  /// Waits for a warning or an error. Returns its text, or an empty string if none is posted in
+  /// time.
   std::string NextComplaint(GstClockTime timeout = kPatience_ns) {
     const gst::MessagePtr message = bus_->Wait(GST_MESSAGE_WARNING | GST_MESSAGE_ERROR, timeout);
     return message ? MessageText(message.get()) : "";
   }
-  /// Returns NextComplaint(), but skips a warning about the machine's receive buffer.
+  /// Returns NextComplaint(), but skips a warning about the receive buffer, which depends on the
+  /// machine.
   std::string NextOwnComplaint() {
     std::string text = NextComplaint();
     if (text.find("receive buffer") != std::string::npos) text = NextComplaint();

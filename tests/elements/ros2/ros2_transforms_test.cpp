@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Transforms that ros2src receives, and clouds that pointcloudfilter moves by them.
+// Tests of transforms that ros2src receives, and of clouds that pointcloudfilter moves by these
+// transforms.
 #include <set>
 
 #include "src/cdr/messages.h"
@@ -28,7 +29,7 @@ TEST_F(Ros2Transforms, TakesTransformsAsTheyAre) {
   peer_->Advertise<PeerTransforms>("rt/tf", kTransformsType, Qos::kReliable);
   ASSERT_TRUE(peer_->WaitForMatch(kPatience));
   ASSERT_TRUE(WaitForStat("publishers", 1));
-  // Messages sent before the two endpoints match are lost.
+  // A message is lost if it is sent before the two endpoints match. Therefore the test repeats it.
   for (int i = 0; i < 600 && Stat("messages-empty") == 0; ++i) {
     ASSERT_TRUE(peer_->Publish(PeerTransforms{}));
     g_usleep(50'000);
@@ -47,7 +48,8 @@ TEST_F(Ros2Transforms, TakesTransformsAsTheyAre) {
   EXPECT_EQ(Field("static"), "false");
 }
 
-/// Hundreds of messages may wait, so a message of transforms must not be as large as a cloud.
+/// Hundreds of messages may wait. Therefore a message of transforms must not be as large as a
+/// cloud.
 TEST_F(Ros2Transforms, WhatIsLargerThanTransformsAreIsDamaged) {
   Start("ros2src", "topic=/tf type=tf qos=reliable");
   peer_ = std::make_unique<FastPeer>(TestDomain());
@@ -60,7 +62,7 @@ TEST_F(Ros2Transforms, WhatIsLargerThanTransformsAreIsDamaged) {
   const auto publish = [&](std::size_t count) {
     return peer_->Publish(PeerBytes{cdr::WriteTransforms(cdr::Transforms(count, one))});
   };
-  // Messages sent before the two endpoints match are lost.
+  // A message is lost if it is sent before the two endpoints match. Therefore the test repeats it.
   for (int i = 0; i < 600 && Stat("messages-damaged") == 0; ++i) {
     ASSERT_TRUE(publish(15'000));
     g_usleep(50'000);
@@ -85,7 +87,7 @@ TEST_F(Ros2Transforms, TakesStaticTransformsFromBeforeItWasThere) {
 }
 
 TEST_F(Ros2Transforms, TakesAllStaticTransformsOfAllThatKeepSome) {
-  constexpr int kEach = 10;  // depth of a peer's history
+  constexpr int kEach = 10;  // number of messages that a peer stores
   std::vector<std::unique_ptr<FastPeer>> peers;
   for (int peer = 0; peer < 3; ++peer) {
     peers.push_back(std::make_unique<FastPeer>(TestDomain()));
@@ -115,7 +117,7 @@ TEST_F(Ros2Transforms, TellsOfStaticTransformsThatNobodyKeeps) {
   EXPECT_NE(text.find("transient local"), std::string::npos) << text;
 }
 
-/// A static and a moving transform lead from the lidar's frame to the frame "map".
+/// A static and a moving transform together lead from the frame of the lidar to the frame "map".
 TEST_F(Ros2Transforms, CloudsGoToTheFrameThatTransformsLeadTo) {
   const std::string domain = " domain-id=" + std::to_string(TestDomain());
   FastPeer fixed(TestDomain());
@@ -139,8 +141,8 @@ TEST_F(Ros2Transforms, CloudsGoToTheFrameThatTransformsLeadTo) {
   const float x = 4;
   std::memcpy(cloud.data.data(), &x, sizeof x);
   ASSERT_TRUE(peer_->Publish(cloud));
-  // The cloud waits for a transform at or after its time. Transforms sent before the two endpoints
-  // match are lost.
+  // The cloud waits for a transform with its own time or a later one. A transform is lost if it is
+  // sent before the two endpoints match. Therefore the test repeats the transforms.
   BufferPtr buffer;
   for (int i = 0; i < 600 && !buffer; ++i) {
     for (const int later : {0, 1})
@@ -151,7 +153,8 @@ TEST_F(Ros2Transforms, CloudsGoToTheFrameThatTransformsLeadTo) {
   ASSERT_TRUE(buffer);
   float moved = 0;
   std::memcpy(&moved, BytesOf(buffer.get()).data(), sizeof moved);
-  EXPECT_NEAR(moved, 4 + 1 + 100.123, 0.001);  // 0.123 s after 100 m, at 1 m/s
+  // The moving transform is at 100 m + 0.123 s * 1 m/s.
+  EXPECT_NEAR(moved, 4 + 1 + 100.123, 0.001);
   EXPECT_EQ(Field("frame-id"), "map");
 }
 

@@ -10,7 +10,7 @@ namespace {
 using gst::CapsPtr;
 using Qos = FastPeer::Qos;
 
-/// ros2sink, and a subscriber of Fast DDS that matches it.
+/// A fixture with a ros2sink and a Fast DDS subscriber that matches it.
 class Ros2Sink : public Ros2Test {
  protected:
   template <class Message>
@@ -137,7 +137,7 @@ TEST_F(Ros2Sink, TellsOfSubscribersThatItsReliabilityDoesNotFit) {
   }
   EXPECT_NE(text.find("qos=sensor-data"), std::string::npos);
   ASSERT_EQ(gst_harness_push(h_.get(), CloudBuffer(cloud)), GST_FLOW_OK);
-  EXPECT_EQ(NextComplaint(0), "");  // one warning for each
+  EXPECT_EQ(NextComplaint(0), "");  // there is only one warning per subscriber
 }
 
 TEST_F(Ros2Sink, TellsInEachRunOfWhatDoesNotFit) {
@@ -230,7 +230,7 @@ TEST_F(Ros2Sink, PublishesEachSampleOfAnImu) {
     EXPECT_EQ(imu.header.sec, 3);
     EXPECT_EQ(imu.header.nanosec, nanosec);
     EXPECT_EQ(imu.header.frame_id, "imu");
-    EXPECT_EQ(imu.orientation_covariance[0], -1);  // there is no orientation
+    EXPECT_EQ(imu.orientation_covariance[0], -1);  // -1: the message has no orientation
     EXPECT_EQ(imu.linear_acceleration, (std::array<double, 3>{0.5, 0, 9.75}));
     EXPECT_EQ(imu.angular_velocity, (std::array<double, 3>{1, 2, 3}));
   }
@@ -265,7 +265,8 @@ TEST_F(Ros2Sink, GivesTrackedPosesTheVarianceThatItIsTold) {
                               CapsPtr(gst_caps_from_string("application/x-odometry")));
   for (const auto tracking : {GST_LIDAR_TRACKING_OK, GST_LIDAR_TRACKING_LOST}) {
     const bool tracked = tracking == GST_LIDAR_TRACKING_OK;
-    // Messages sent before the two endpoints match are lost.
+    // A message is lost if it is sent before the two endpoints match. Therefore the test repeats
+    // it.
     PeerOdometry odometry;
     for (int i = 0; i < 300 && odometry.pose_covariance[7] != (tracked ? 0.01 : 1e6); ++i) {
       ASSERT_EQ(gst_harness_push(h_.get(), PoseBuffer(tracking)), GST_FLOW_OK);
@@ -285,7 +286,7 @@ TEST_F(Ros2Sink, ItsTransformsAreThoseThatTheSourceTakes) {
   const Harness sink(gst_harness_new_parse(line.c_str()));
   gst_harness_set_src_caps_str(sink.get(), "application/x-odometry,child-frame-id=base");
   ASSERT_TRUE(WaitForStat("publishers", 1));
-  // Messages sent before the two endpoints match are lost.
+  // A message is lost if it is sent before the two endpoints match. Therefore the test repeats it.
   for (int i = 0; i < 600 && Stat("messages") == 0; ++i) {
     ASSERT_EQ(gst_harness_push(sink.get(), PoseBuffer()), GST_FLOW_OK);
     g_usleep(50'000);
@@ -314,7 +315,7 @@ TEST_F(Ros2Sink, PublishesTransforms) {
   EXPECT_TRUE(std::equal(transform.transform.begin(), transform.transform.end(), kPose));
 }
 
-/// Returns the error of an element that does not start.
+/// Returns the error of an element that fails to start.
 std::string StartError(const std::string& line) {
   const std::unique_ptr<GstElement, gst::Unref> element(gst_parse_launch(line.c_str(), nullptr));
   const ElementBus bus(element.get());
@@ -364,8 +365,8 @@ TEST_F(Ros2Sink, ShowsItselfToTheToolsOfRos) {
                          graph.nodes[0].writers[0].begin()));
 }
 
-/// Clouds go from Fast DDS to ros2src to ros2sink and back: as many as an OS1-128 has in a second
-/// and a half, each of 131072 points of 24 bytes.
+/// Clouds are sent by Fast DDS to ros2src, and by ros2sink back to Fast DDS. They are as many as an
+/// OS1-128 sends in a second and a half. Each has 131072 points of 24 bytes.
 TEST(Ros2Bridge, CarriesWholeScansIntact) {
   constexpr unsigned kClouds = 15;
   const std::string domain = " domain-id=" + std::to_string(TestDomain());
@@ -380,8 +381,8 @@ TEST(Ros2Bridge, CarriesWholeScansIntact) {
   out.Subscribe<PeerCloud>("rt/out", kCloudType, Qos::kReliable);
   ASSERT_TRUE(in.WaitForMatch(kPatience));
   PeerCloud taken;
-  // The sink makes its topic with the first cloud, and Cyclone skips messages that a publisher sent
-  // before its first heartbeat.
+  // The sink makes its topic when it gets the first cloud. Cyclone skips messages that a publisher
+  // sent before its first heartbeat. Therefore the test repeats the first cloud.
   const PeerCloud first = TestCloud(1024, 128);
   bool found = false;
   for (int i = 0; i < 100 && !found; ++i) {
@@ -393,7 +394,7 @@ TEST(Ros2Bridge, CarriesWholeScansIntact) {
   for (unsigned i = 0; i < kClouds; ++i) {
     const PeerCloud cloud = TestCloud(1024, 128, i + 10);
     ASSERT_TRUE(in.Publish(cloud));
-    do {  // earlier clouds may still be under way
+    do {  // copies of the first cloud may still arrive
       ASSERT_TRUE(out.Take(&taken, kPatience)) << i;
     } while (taken.header.sec == first.header.sec);
     ASSERT_EQ(taken.header.sec, cloud.header.sec);

@@ -9,7 +9,7 @@ namespace {
 using gst::BufferPtr;
 using Qos = FastPeer::Qos;
 
-/// ros2src, and a publisher of Fast DDS that matches it.
+/// A fixture with a ros2src and a Fast DDS publisher that matches it.
 class Ros2Src : public Ros2Test {
  protected:
   void StartWithPeer(const std::string& properties = "", const std::string& behind = "") {
@@ -19,7 +19,7 @@ class Ros2Src : public Ros2Test {
     ASSERT_TRUE(peer_->WaitForMatch(kPatience));
     ASSERT_TRUE(WaitForStat("publishers", 1));
   }
-  /// Starts with a peer that publishes invalid messages.
+  /// Starts with a peer that can publish invalid messages.
   void StartWithRawPeer(const std::string& type = kCloudType) {
     Start("ros2src", "topic=/points qos=reliable");
     peer_ = std::make_unique<FastPeer>(TestDomain());
@@ -113,7 +113,8 @@ TEST_F(Ros2Src, ConvertsBigEndianDoublesForWhoeverIsBehind) {
   ASSERT_GE(points.size(), 24u);
   float last[3];
   std::memcpy(last, points.data() + 12, sizeof last);
-  EXPECT_NEAR(last[0] + last[1] + last[2], 15, 9.1);  // 6 or 15, since the order may change
+  // 6 or 15, because the order of points may change.
+  EXPECT_NEAR(last[0] + last[1] + last[2], 15, 9.1);
 }
 
 TEST_F(Ros2Src, GivesTheFieldsAndTheRateThatAFilterNames) {
@@ -148,7 +149,7 @@ void Want(gpointer filter, const char* field) {
   gst_util_set_object_arg(G_OBJECT(filter), "caps", caps.c_str());
 }
 
-/// Downstream's caps change while the source waits for a message, and while it pushes one.
+/// Downstream changes its caps while the source waits for a message, and while it pushes a buffer.
 TEST_F(Ros2Src, GivesWhatIsWantedFromTheNextMessageOn) {
   StartWithPeer("qos=reliable", " ! capsfilter name=filter");
   const std::unique_ptr<GstElement, gst::Unref> filter(
@@ -188,10 +189,11 @@ TEST_F(Ros2Src, DropsAndCountsWhatIsDamagedAndGoesOn) {
   const auto good = cdr::WritePointCloud2(cloud);
   std::vector<std::uint8_t> truncated(good.begin(), good.end() - 50);
   std::vector<std::uint8_t> huge = good;
-  huge[good.size() - 1 - 96 - 1] = 0x40;  // 1 GiB of data
-  cloud.layout.width = 5;                 // more than the data hold
+  huge[good.size() - 1 - 96 - 1] = 0x40;  // claims 1 GiB of data
+  cloud.layout.width = 5;                 // more points than the data contain
   const auto wrong_step = cdr::WritePointCloud2(cloud);
-  // Cyclone itself refuses messages without a known encapsulation.
+  // All invalid messages need a valid encapsulation header, because otherwise Cyclone itself
+  // refuses them.
   std::vector<std::uint8_t> garbage(100, 0xFF);
   std::vector<std::uint8_t> short_one(24, 0);
   for (auto* message : {&garbage, &short_one}) std::copy_n(good.begin(), 4, message->begin());
@@ -201,10 +203,11 @@ TEST_F(Ros2Src, DropsAndCountsWhatIsDamagedAndGoesOn) {
   ASSERT_TRUE(peer_->Publish(PeerBytes{good}));
   EXPECT_EQ(BytesOf(Pull().get()), points);
   EXPECT_NE(NextOwnComplaint().find("is damaged"), std::string::npos);
-  EXPECT_EQ(NextComplaint(0), "");  // one warning for all
+  EXPECT_EQ(NextComplaint(0), "");  // there is only one warning for all
   EXPECT_EQ(Stat("messages"), 6u);
   ASSERT_TRUE(peer_->Publish(PeerBytes{garbage}));
-  EXPECT_NE(NextOwnComplaint().find("is damaged"), std::string::npos);  // after a good message
+  // There is another warning, because a good message came in between.
+  EXPECT_NE(NextOwnComplaint().find("is damaged"), std::string::npos);
 }
 
 TEST_F(Ros2Src, CountsCloudsOfNoPoints) {
@@ -243,7 +246,7 @@ TEST_F(Ros2Src, TellsOfPublishersThatItsReliabilityDoesNotFit) {
   EXPECT_NE(text.find("best-effort"), std::string::npos) << text;
 }
 
-/// The same warnings come again in the next run, and counters begin at 0.
+/// In the next run, the same warnings are posted again and the counters begin at 0.
 TEST_F(Ros2Src, TellsInEachRunOfWhatDoesNotFit) {
   FastPeer best_effort(TestDomain());
   best_effort.Advertise<PeerCloud>("rt/points", kCloudType, Qos::kBestEffort);
@@ -410,7 +413,8 @@ TEST_F(Ros2Src, HasLongGidsAndNoTypeHashInHumble) {
                               Qos::kReliableTransient);
   PeerBytes graph;
   ASSERT_TRUE(peer_->Take(&graph, kPatience));
-  // Header, Gid, node count, "/", "edge", one reader, no writer.
+  // The terms are: the header, the Gid, the number of nodes, "/", "edge", one reader, and no
+  // writer.
   EXPECT_EQ(graph.bytes.size(), 4u + 24 + 4 + (4 + 2 + 2) + (4 + 5 + 3) + (4 + 24) + 4);
   for (const PeerEndpoint& e : peer_->endpoints()) EXPECT_EQ(e.user_data, "") << e.topic;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// ros2sink with a subscriber that is slow or hangs, and the sink's counters then.
+// Tests of ros2sink with a subscriber that is slow or does not read at all, and of the sink's
+// counters.
 #include <dds/dds.h>
 
 #include "ext/ros2/raw_type.h"
@@ -14,7 +15,7 @@ constexpr const char* kSlow = "A subscriber is too slow";
 constexpr gsize kSampleSize = 32;
 constexpr const char* kCaps = "application/x-imu,sample-size=32";
 
-/// A reliable subscriber to IMU samples that has room for one sample.
+/// A reliable subscriber to IMU samples. It has room for only one sample.
 class SlowReader {
  public:
   explicit SlowReader(std::uint32_t domain)
@@ -36,7 +37,7 @@ class SlowReader {
   SlowReader(const SlowReader&) = delete;
   SlowReader& operator=(const SlowReader&) = delete;
 
-  /// Takes a message. Returns its size, or 0 if there is none.
+  /// Takes a message from the reader. Returns the size of the message, or 0 if there is none.
   std::size_t Take() {
     ddsi_serdata* data = nullptr;
     dds_sample_info_t info{};
@@ -55,7 +56,7 @@ class Ros2SlowSubscriber : public Ros2Test {
   void SetUp() override {
     Start("ros2sink", "topic=/points sync=false");
     gst_harness_set_src_caps_str(h_.get(), kCaps);
-    // The sink makes its topic with the first message.
+    // The sink makes its topic when it gets the first message.
     Push(1);
     reader_ = std::make_unique<SlowReader>(TestDomain());
     ASSERT_TRUE(WaitForStat("subscribers", 1));
@@ -95,7 +96,7 @@ TEST_F(Ros2SlowSubscriber, IsToldOfOnceUntilItTakesAMessageAndTheBytesAreThoseOf
   }
   EXPECT_EQ(Stat("buffers-refused"), 0U);
   EXPECT_EQ(Stat("messages-without-subscriber"), 1U);
-  reader_.reset();  // the element's stop would end the reader's domain
+  reader_.reset();  // otherwise the stop of the element would end the reader's domain
   StartAgain(kCaps);
   for (const char* counter : {"messages", "bytes", "messages-timed-out"})
     EXPECT_EQ(Stat(counter), 0U) << counter;
@@ -105,7 +106,8 @@ TEST_F(Ros2SlowSubscriber, IsToldOfOnceUntilItTakesAMessageAndTheBytesAreThoseOf
   EXPECT_EQ(Complaints(kSlow), 1) << "in each run";
 }
 
-/// Each wait for the subscriber takes a tenth of a second.
+/// The sink waits a tenth of a second for a slow subscriber. It must wait once per buffer, not for
+/// each sample.
 TEST_F(Ros2SlowSubscriber, IsWaitedForOnceForAllSamplesOfABuffer) {
   Push(1);
   const gint64 begin = g_get_monotonic_time();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Messages made of buffers, and DDS settings made of properties, without a network.
+// Tests of messages that are made from buffers and of DDS settings that are made from properties,
+// without a network.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -125,7 +126,7 @@ TEST_F(WrittenMessages, OfCloudsAreAsLargeAsTheirCapsSayOfOneRowAnySize) {
       "fields=(string)\"x:F32:0,y:F32:4,z:F32:8\"";
   EXPECT_TRUE(written(rows, 48));
   for (const gsize size : {24U, 49U, 72U}) EXPECT_FALSE(written(rows, size)) << size;
-  // The width follows from the size if the caps have none.
+  // If the caps have no width, the width follows from the size of the buffer.
   const std::string open =
       "application/x-pointcloud2,height=2,point-step=12,"
       "fields=(string)\"x:F32:0,y:F32:4,z:F32:8\"";
@@ -226,7 +227,7 @@ class RosOptions : public ::testing::Test {
   std::optional<dds::EndpointOptions> Options() {
     return ToOptions(element_.get(), settings_, cdr::RosType::kImu);
   }
-  /// Returns the domain with ROS_DOMAIN_ID set to `variable`; -1 if that is an error.
+  /// Returns the domain if ROS_DOMAIN_ID has the value `variable`, or -1 if this is an error.
   int DomainOf(const char* variable) {
     g_setenv("ROS_DOMAIN_ID", variable, TRUE);
     const auto options = Options();
@@ -247,7 +248,7 @@ TEST_F(RosOptions, TakeTheDomainOfTheVariableWhereNobodySaysOtherwise) {
   EXPECT_EQ(Options()->domain, 0U);
   settings_.domain_id = 0;
   EXPECT_EQ(DomainOf("7"), 0);
-  EXPECT_EQ(DomainOf("x"), 0);  // the property applies, not the variable
+  EXPECT_EQ(DomainOf("x"), 0);  // the property is set, so the variable is ignored
   settings_.domain_id = 9;
   EXPECT_EQ(DomainOf("7"), 9);
 }
