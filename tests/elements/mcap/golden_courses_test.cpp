@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Golden files hold what mcapsink and mcapsrc output, send and post in scripted runs.
+// Compares what mcapsink and mcapsrc output, send and post in scripted runs with golden files.
 #include "tests/support/files.h"
 #include "tests/support/golden_course.h"
 
@@ -16,7 +16,8 @@ constexpr const char* kTallCaps =
     "z:F32:8\",framerate=10/1,is-bigendian=false,is-dense=true,frame-id=os";
 constexpr const char* kPoseCaps = "application/x-odometry,frame-id=odom,child-frame-id=os";
 
-/// Works in a temporary folder, so that the property location, and thus messages, have no path.
+/// Changes into a temporary folder. So the property location, and messages that contain it, have no
+/// path that differs between runs.
 class WorkingFolder {
  public:
   WorkingFolder() { std::filesystem::current_path(folder_.path()); }
@@ -101,7 +102,7 @@ void SinkCourse(Course& c) {
   for (const std::string& file : files) c.AddLine(file);
 }
 
-/// Records clouds, and poses with a silence of 700 ms.
+/// Records clouds and poses. The poses have a pause of 700 ms.
 void RecordTwoStreams(const char* location) {
   const gst::ElementPtr recorder(
       gst_parse_launch(("mcapsink chunk-size=1024 compression=none chunk-duration=300000000 "

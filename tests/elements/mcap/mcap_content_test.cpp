@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The content of a recording, message by message.
+// Tests of the content of a recording, message by message.
 
 #include "ext/mcap/timeline.h"
 #include "src/cdr/coded_slice.h"
@@ -55,7 +55,7 @@ void End(GstHarness* h) { gst_harness_push_event(h, gst_event_new_eos()); }
 
 class McapContent : public Recording {
  protected:
-  /// Returns the messages that `buffers` of `caps` become, in the frame `sensor_frame_`.
+  /// Records `buffers` with `caps`, in the frame `sensor_frame_`. Returns the recorded messages.
   std::vector<Logged> Write(const char* caps, const std::vector<GstBuffer*>& buffers) {
     const Harness h = RecordingTo(Path("a.mcap"));
     gst_child_proxy_set(GST_CHILD_PROXY(h->element), "sink_0::frame-id", sensor_frame_, nullptr);
@@ -210,7 +210,8 @@ TEST_F(McapContent, TheSinkCountsAndTellsWhatItWrote) {
   EXPECT_EQ(recorded.stats.at("messages"), 80U);
   EXPECT_GE(recorded.stats.at("bytes"), bytes);
   EXPECT_LT(recorded.stats.at("bytes"),
-            bytes + 80 * 100);  // a message has less than 100 bytes besides its slice
+            // The other parts of a message have less than 100 bytes.
+            bytes + 80 * 100);
   EXPECT_EQ(recorded.stats.at("files"), 4U);
   EXPECT_EQ(recorded.stats.at("chunks"), 10U);
   ASSERT_EQ(recorded.complete.size(), 4U);
@@ -229,7 +230,7 @@ TEST_F(McapContent, EachRecordingOfASinkBeginsAnew) {
   const Harness other(gst_harness_new_with_element(h->element, "sink_1", nullptr));
   SetPlaying(h.get());
   for (const bool first : {true, false}) {
-    // The second recording begins an hour earlier.
+    // The second recording begins an hour before the first one.
     const GstClockTime start = first ? kCapture : kCapture - 3600 * GST_SECOND;
     const std::string topic = first ? "/slices" : "/rear";
     if (!first) gst_child_proxy_set(GST_CHILD_PROXY(h->element), "sink_0::topic", "/rear", nullptr);
@@ -237,7 +238,8 @@ TEST_F(McapContent, EachRecordingOfASinkBeginsAnew) {
     for (guint i = 0; i < 3; ++i) {
       const GstClockTime pts = (i + 1) * GST_MSECOND;
       EXPECT_EQ(gst_harness_push(h.get(), Slice(1, pts, start + i * GST_MSECOND)), GST_FLOW_OK);
-      // The recording continues: the end of stream `h` in the first recording has no effect here.
+      // Only stream `other` ends here, so the recording must continue. The end of stream `h` in the
+      // first recording must have no effect.
       if (!first && i == 0) End(other.get());
     }
     EXPECT_EQ(StatOf(h->element, "messages"), 3U);
@@ -321,7 +323,7 @@ TEST_F(McapContent, SlicesThatCannotBeAreDroppedAndCounted) {
   EXPECT_EQ(slices[0].slice.slice_count, 4096U);
   EXPECT_EQ(slices[1].slice.slice_count, 4U);
   EXPECT_TRUE(slices[0].discont);
-  EXPECT_TRUE(slices[1].discont);  // a slice is missing before it
+  EXPECT_TRUE(slices[1].discont);  // the slice before this one is missing
   EXPECT_FALSE(slices[2].discont);
   EXPECT_EQ(played.stats.at("messages"), 5U);
   EXPECT_EQ(played.stats.at("messages-dropped"), 2U);
@@ -347,11 +349,12 @@ TEST_F(McapContent, GapsFillWhatASilentStreamLeavesOpen) {
              " m.src_0 ! queue ! fakesink name=see0 m.src_1 ! queue ! fakesink name=see1");
   gst_element_set_state(p.get(), GST_STATE_PLAYING);
   ASSERT_TRUE(p.Wait(GST_MESSAGE_EOS));
-  using Gaps = std::vector<std::pair<GstClockTime, GstClockTime>>;  // begin and length [ms]
+  // The start and the length of each gap [ms].
+  using Gaps = std::vector<std::pair<GstClockTime, GstClockTime>>;
   EXPECT_EQ(p.outcome().gaps["see1"],
             (Gaps{{0, 500}, {500, 500}, {1'350, 550}, {1'900, 500}, {2'400, 500}}));
   EXPECT_EQ(p.outcome().gaps["see0"], Gaps{});
-  // After a seek the first gap of the silent stream begins at the position of the seek.
+  // After a seek, the first gap event of the silent stream begins at the position of the seek.
   p.Forget();
   ASSERT_TRUE(
       gst_element_seek_simple(p.get(), GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH, 1'500 * GST_MSECOND));
@@ -405,7 +408,8 @@ TEST(McapTimeline, KeepsTheDistancesOfRunningTimes) {
   EXPECT_EQ(line.LogTime({990, {}, 1}), 4'990U);
   EXPECT_EQ(line.LogTime({{}, 1, 1}), 5'010U);
   line.Restart();
-  EXPECT_EQ(line.LogTime({3, 2'000, 1}), 5'010U);  // never before the newest log time
+  // A log time is never earlier than the newest log time.
+  EXPECT_EQ(line.LogTime({3, 2'000, 1}), 5'010U);
   EXPECT_EQ(line.LogTime({4, 2'000, 1}), 5'011U);
   line.Restart();
   EXPECT_EQ(line.LogTime({0, 8'000, 1}), 8'000U);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What mcapsink and mcapsrc report if they cannot do their work.
+// Tests of what mcapsink and mcapsrc report if they cannot do their work.
 #include <sys/stat.h>
 
 #include <fstream>
@@ -115,7 +115,7 @@ TEST_F(McapErrors, TheLocationIsCheckedBeforeTheFirstBuffer) {
   EXPECT_TRUE(Files().empty());
 }
 
-/// A user learns of a wrong location at the start, not with the first slice.
+/// A wrong location must cause an error at the start, not with the first slice.
 TEST_F(McapErrors, AWrongLocationFailsTheStart) {
   for (const std::string& location :
        {std::string(), std::string("/nowhere/a.mcap"), folder_, Path("a-%s.mcap"),
@@ -134,7 +134,7 @@ TEST_F(McapErrors, OtherStreamsAreRefusedByName) {
             "This stream cannot be recorded: mcapsink records clouds, coded slices, IMU samples "
             "and odometry, but not video/x-raw.");
   EXPECT_TRUE(Files().empty());
-  // The error comes with each attempt to start.
+  // The error is posted at each attempt to start.
   Pipeline p("videotestsrc num-buffers=1 ! mcapsink" + At("a.mcap"));
   for (int round = 0; round < 2; ++round) {
     p.Forget();
@@ -200,7 +200,8 @@ TEST_F(McapErrors, APlayerSaysWhyItCannotPlay) {
 
 TEST_F(McapErrors, NestedCapsOfAStrangersChannelAreRefusedAtOnce) {
   std::string caps = "application/x-lidar-slice, alignment=(string)slice, a=";
-  while (caps.size() < 569) caps += "[[ a, b={";  // each level doubles the parser's time
+  // Each level doubles the time of GStreamer's parser.
+  while (caps.size() < 569) caps += "[[ a, b={";
   mcap::test::FileMaker maker(mcap::WriterSettings{});
   mcap::Channel channel;
   channel.topic = "/slices";
@@ -266,7 +267,7 @@ TEST_F(McapErrors, CloudsThatWouldBecomeHugeAreRefused) {
   channel.message_encoding = "cdr";
   const auto reader = gst::MessageReader::Make(gst::SchemaOf(gst::MessageType::kCloud), channel);
   ASSERT_TRUE(reader);
-  // A point of 1 byte becomes a point of 12 bytes.
+  // A point has only 1 byte in the message, but 12 bytes in the buffer.
   const auto reads = [&](std::uint32_t width) {
     const std::vector<std::uint8_t> points(width);
     cdr::PointCloud2 cloud;
@@ -300,7 +301,8 @@ TEST_F(McapErrors, MessagesThatAreCutCostThemselvesOnly) {
   }
 }
 
-/// Slices without caps are not played. If recorded caps do not fit an IMU's samples, ours are used.
+/// Slices without caps are not played. If the recorded caps of an IMU do not match its samples,
+/// mcapsrc uses its own caps.
 TEST_F(McapErrors, AStrangersChannelsDoNotKeepOthersFromBeingPlayed) {
   const auto imu = cdr::WriteImu({});
   const std::string ours = "fields=(string)\"" + std::string(kImuFields) + '"';
@@ -369,7 +371,7 @@ TEST_F(McapErrors, APipelineThatIsStoppedLeavesACompleteFile) {
   Pipeline p(kSensor + " is-live=true ! lidarenc ! mcapsink name=m" + At("a.mcap"));
   gst_element_set_state(p.get(), GST_STATE_PLAYING);
   EXPECT_TRUE(p.AwaitStat("messages", 5));
-  gst_element_set_state(p.get(), GST_STATE_NULL);  // without an EOS
+  gst_element_set_state(p.get(), GST_STATE_NULL);  // without EOS
   const auto played = Play("mcapsrc name=m" + At("a.mcap") + " ! fakesink name=see");
   EXPECT_EQ(played.error, "");
   EXPECT_EQ(played.stats.at("files-unclosed"), 0U);

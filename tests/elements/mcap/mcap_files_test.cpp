@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Recordings in pieces, recordings that broke off, and damaged recordings.
+// Tests of recordings in several files, of recordings that are incomplete, and of damaged
+// recordings.
 #include <ctime>
 #include <fstream>
 #include <future>
@@ -36,7 +37,7 @@ TEST_F(McapFiles, PiecesPlayAsOneRecording) {
     EXPECT_TRUE(played.buffers.at("see")[i].SameAs(written[i]));
     EXPECT_EQ(played.buffers.at("see")[i].pts, written[i].pts);
   }
-  // Each piece begins with a scan.
+  // Each file begins with the first slice of a scan.
   const auto second = PlayFile("rec-001.mcap");
   EXPECT_EQ(second.buffers.at("see")[0].slice.slice_index, 0U);
   EXPECT_EQ(second.buffers.at("see").size(), 24U);
@@ -53,7 +54,7 @@ TEST_F(McapFiles, SeeksOverPieces) {
   gst_element_set_state(p.get(), GST_STATE_PLAYING);
   ASSERT_TRUE(p.Wait(GST_MESSAGE_EOS));
   EXPECT_EQ(p.outcome().buffers.at("see").size(), 16U);
-  // A seek to the last slice of a piece finds it in that piece.
+  // A seek to the last slice of a file finds this slice in that file.
   p.Forget();
   ASSERT_TRUE(gst_element_seek_simple(p.get(), GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH,
                                       300 * GST_MSECOND - 12'500 * GST_USECOND));
@@ -87,7 +88,7 @@ TEST_F(McapFiles, PiecesEndByTheirSize) {
 TEST_F(McapFiles, OldPiecesStayAndOldestGo) {
   Record(4, "max-file-duration=200000000", "rec-%03d.mcap");
   Record(4, "max-file-duration=200000000", "rec-%03d.mcap");
-  EXPECT_EQ(Files().size(), 4U);  // two of each recording
+  EXPECT_EQ(Files().size(), 4U);  // two files of each recording
   Record(4, "max-file-duration=200000000 max-files=3", "rec-%03d.mcap");
   EXPECT_EQ(Files(), (std::vector<std::string>{"rec-003.mcap", "rec-004.mcap", "rec-005.mcap"}));
 }
@@ -107,7 +108,7 @@ TEST_F(McapFiles, AFileThatBrokeOffPlaysUpToItsLastChunk) {
     EXPECT_EQ(played.stats.at("files-unclosed"), 1U);
     EXPECT_NE(played.warning.find("were not closed"), std::string::npos) << played.warning;
     const auto& read = played.buffers.at("see");
-    EXPECT_EQ(read.size() % 16, 0U);  // two scans a chunk
+    EXPECT_EQ(read.size() % 16, 0U);  // each chunk has two scans of 8 slices
     EXPECT_GE(read.size() + 32, written.size() * part / 11);
     for (std::size_t i = 0; i < read.size(); ++i) EXPECT_TRUE(read[i].SameAs(written[i]));
     most = std::max(most, read.size());
@@ -154,7 +155,7 @@ TEST_F(McapFiles, AChunkThatIsDamagedCostsItselfAndIsCounted) {
   EXPECT_EQ(played.warning, "The recording is damaged: 1 chunks and 0 messages are left out.");
   EXPECT_LT(played.buffers.at("see").size(), 32U);
   EXPECT_GE(played.buffers.at("see").size(), 16U);
-  // The same holds for two pieces of a recording.
+  // The same must hold for a recording that consists of two files.
   WriteFile("b-0.mcap", damaged);
   WriteFile("b-1.mcap", damaged);
   EXPECT_EQ(PlayFile("b-%d.mcap").stats.at("chunks-damaged"), 2U);
@@ -176,7 +177,8 @@ TEST_F(McapFiles, WhereAllOrTheLastIsDamagedThePlayerSaysSo) {
   EXPECT_NE(played.warning, "");
 }
 
-/// Writes a recording whose chunks of zeros take a while each to read, and have no message to play.
+/// Writes a recording with `chunks` chunks of zeros. Each chunk takes a while to read, but contains
+/// no message that can be played.
 void WriteBombs(const std::string& path, int chunks) {
   mcap::Bytes file(mcap::kMagic.begin(), mcap::kMagic.end());
   mcap::Bytes records;
@@ -210,7 +212,7 @@ void WriteBombs(const std::string& path, int chunks) {
       .write(reinterpret_cast<const char*>(file.data()), static_cast<std::streamsize>(file.size()));
 }
 
-/// The processor time of this process [s].
+/// Returns the processor time that this process has used [s].
 double ProcessorTime() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 TEST_F(McapFiles, ThatTakeLongToReadDoNotDelayAStop) {
@@ -220,7 +222,7 @@ TEST_F(McapFiles, ThatTakeLongToReadDoNotDelayAStop) {
   const double one_chunk = ProcessorTime() - begin;
   WriteBombs(Path("bombs.mcap"), 100);
   Pipeline p("mcapsrc name=m" + At("bombs.mcap") + " ! fakesink");
-  // Reading begins after the pads are announced.
+  // mcapsrc begins to read chunks after it has announced its pads.
   std::promise<void> pads;
   g_signal_connect(p.Find("m").get(), "no-more-pads",
                    G_CALLBACK(+[](GstElement*, std::promise<void>* told) { told->set_value(); }),
@@ -229,7 +231,8 @@ TEST_F(McapFiles, ThatTakeLongToReadDoNotDelayAStop) {
   pads.get_future().wait();
   begin = ProcessorTime();
   gst_element_set_state(p.get(), GST_STATE_NULL);
-  // The current chunk is read to its end. A hundred chunks would cost ten times the bound.
+  // A stop waits only until the current chunk is read. If all hundred chunks were read, this would
+  // take ten times as long as allowed.
   EXPECT_LT(ProcessorTime() - begin, 10 * one_chunk);
 }
 
@@ -239,7 +242,8 @@ TEST_F(McapFiles, DamageAnywhereIsSurvived) {
   std::mt19937 random(11);
   for (int round = 0; round < 60; ++round) {
     std::string damaged = whole;
-    // Half of the rounds damage the beginning: the caps there are the most complicated part.
+    // Every second round damages only the beginning, because the caps are there, and caps are the
+    // most complicated part.
     for (int i = 0; i < 4; ++i)
       damaged[random() % (round % 2 == 0 ? 4'000 : damaged.size())] = static_cast<char>(random());
     WriteFile("b.mcap", damaged);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Seeks and segments of mcapsrc.
+// Tests of seeks and segments of mcapsrc.
 #include <atomic>
 #include <condition_variable>
 #include <limits>
@@ -18,7 +18,7 @@ namespace {
 
 class McapSeek : public Recording {};
 
-/// Returns the position of the playing pipeline `p`, and the duration of the recording.
+/// Returns the position of the pipeline `p` and the duration of its recording.
 std::pair<gint64, gint64> Times(const Pipeline& p) {
   std::pair<gint64, gint64> times{-1, -1};
   gst_element_query_position(p.get(), GST_FORMAT_TIME, &times.first);
@@ -60,11 +60,11 @@ TEST_F(McapSeek, SeeksByTime) {
   gst_element_set_state(p.get(), GST_STATE_PLAYING);
   ASSERT_TRUE(p.Wait(GST_MESSAGE_EOS));
   const auto played = p.outcome().buffers.at("see");
-  ASSERT_EQ(played.size(), 16U);  // of 12.5 ms each
+  ASSERT_EQ(played.size(), 16U);  // each slice is 12.5 ms long
   EXPECT_GE(played.front().pts, static_cast<GstClockTime>(from));
   EXPECT_LT(played.front().pts, static_cast<GstClockTime>(from) + 13 * GST_MSECOND);
   EXPECT_TRUE(played.front().discont);
-  // A seek to 0 after EOS plays all again.
+  // A seek to 0 after EOS plays the whole recording again.
   p.Forget();
   ASSERT_TRUE(gst_element_seek_simple(p.get(), GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH, 0));
   ASSERT_TRUE(p.Wait(GST_MESSAGE_EOS));
@@ -72,12 +72,13 @@ TEST_F(McapSeek, SeeksByTime) {
   gint64 position = 0;
   ASSERT_TRUE(gst_element_query_position(p.Find("m").get(), GST_FORMAT_TIME, &position));
   EXPECT_EQ(position, length);
-  // A negative rate is refused.
+  // A seek with a negative rate is refused.
   EXPECT_FALSE(gst_element_seek(p.get(), -1, GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH,
                                 GST_SEEK_TYPE_SET, 0, GST_SEEK_TYPE_NONE, 0));
 }
 
-/// Streams differ in their delay, so a file begins before the end of the one before it.
+/// Streams may have different delays. Therefore a file may begin before the end of the previous
+/// file.
 TEST_F(McapSeek, PlaysAllBeforeTheEndWhereFilesOverlap) {
   for (const int file : {0, 1}) {
     const Harness h = RecordingTo(Path("rec-" + std::to_string(file) + ".mcap"));
@@ -120,7 +121,7 @@ TEST_F(McapSeek, RefusesToEndBeforeItBegins) {
   EXPECT_EQ(p.Run().error, "");
 }
 
-/// Records the running time at the start of each segment that comes to a sink [ms].
+/// Records, for each segment that arrives at a sink, the running time at which it starts [ms].
 class SegmentTimes {
  public:
   explicit SegmentTimes(GstElement* sink) : pad_(gst_element_get_static_pad(sink, "sink")) {
@@ -157,7 +158,8 @@ class SegmentTimes {
   std::vector<GstClockTime> times_;
 };
 
-/// An unlinked pad and a pad that returned EOS before would end the segment together.
+/// If the EOS that a pad returned in the last segment still counted, the next segment would end at
+/// once, because the other pad is not linked.
 TEST_F(McapSeek, ASegmentPlaysThoughTheOneBeforeEndedDownstream) {
   {
     const Harness h = RecordingTo(Path("a.mcap"));
@@ -168,7 +170,8 @@ TEST_F(McapSeek, ASegmentPlaysThoughTheOneBeforeEndedDownstream) {
       GstBuffer* buffer = gst_buffer_new_memdup("s", 1);
       GST_BUFFER_PTS(buffer) = i * 10 * GST_MSECOND;
       gst_lidar_buffer_set_capture_time(buffer, kCapture + GST_BUFFER_PTS(buffer));
-      GstHarness* const stream = i % 2 == 0 ? other.get() : h.get();  // the unlinked one is first
+      // The stream that is not linked has the first message.
+      GstHarness* const stream = i % 2 == 0 ? other.get() : h.get();
       EXPECT_EQ(gst_harness_push(stream, buffer), GST_FLOW_OK);
     }
     for (GstHarness* stream : {h.get(), other.get()})
@@ -214,7 +217,7 @@ TEST_F(McapSeek, ASegmentSeekEndsWithItsMessage) {
   ASSERT_TRUE(p.Wait(GST_MESSAGE_SEGMENT_DONE));
   EXPECT_EQ(p.outcome().segment_done, 300 * GST_MSECOND);
   segments.Take();
-  // The next segments follow without a flush, as in a loop.
+  // The next segments follow without a flush, as if the recording were played in a loop.
   for (const GstSeekFlags next : {GST_SEEK_FLAG_SEGMENT, GST_SEEK_FLAG_NONE}) {
     ASSERT_TRUE(gst_element_seek(p.get(), 1, GST_FORMAT_TIME, next, GST_SEEK_TYPE_SET, 0,
                                  GST_SEEK_TYPE_SET, 300 * GST_MSECOND));
@@ -240,7 +243,7 @@ class EventNumbers {
                                                    GST_PAD_PROBE_TYPE_EVENT_FLUSH),
                       keep, this, nullptr);
   }
-  /// Returns the events once there are `count`.
+  /// Waits until there are `count` events. Returns the events.
   std::vector<Entry> Await(std::size_t count) {
     EXPECT_TRUE(Eventually([&] {
       const std::lock_guard lock(mutex_);
@@ -336,7 +339,7 @@ TEST_F(McapSeek, SaysHowFarOneMaySeekAndWhatIsPlayed) {
   }
 }
 
-/// Each sink of a pipeline sends the seek to its own branch.
+/// A pipeline sends a seek event to each of its sinks, and each sink sends it upstream.
 TEST_F(McapSeek, IsDoneOnceHoweverManySinksSendIt) {
   const std::string sensor = kSensor + " num-buffers=16 ! lidarenc ! m. ";
   Play("mcapsink name=m" + At("a.mcap") + sensor + sensor + sensor);
@@ -366,8 +369,8 @@ TEST_F(McapSeek, IsDoneOnceHoweverManySinksSendIt) {
   }
 }
 
-/// Records the times of a sink's buffers since the last flush. Blocks the sink at a buffer of
-/// `closed_from` or later until Open().
+/// Records the times of the buffers that a sink has received since the last flush. Blocks the sink
+/// at a buffer whose time is `closed_from` or later, until Open() is called.
 class Gate {
  public:
   explicit Gate(GstClockTime closed_from) : closed_from_(closed_from) {}
@@ -411,7 +414,7 @@ class Gate {
     changed_.wait_for(lock, kPatience, [&] { return pts < closed_from_; });
   }
 
-  mutable std::mutex mutex_;  // guards what follows
+  mutable std::mutex mutex_;  // guards the members below
   std::condition_variable changed_;
   GstClockTime closed_from_;
   std::vector<GstClockTime> shown_;
@@ -438,7 +441,8 @@ TEST_F(McapSeek, ASeekHoldsWhereItsEndIsPlayedMeanwhile) {
   Pipeline p("mcapsrc name=m" + At("a.mcap") +
              " m.src_0 ! fakesink name=a async=false m.src_1 ! fakesink name=b async=false");
   gate.Guard(p.Find("b").get());
-  // The first stream is flushed first. Until this flush ends, the second stream plays on.
+  // The first stream is flushed before the second one. Until its flush has ended, the second stream
+  // continues to play.
   const gst::PadPtr first(gst_element_get_static_pad(p.Find("a").get(), "sink"));
   gst_pad_add_probe(
       first.get(), GST_PAD_PROBE_TYPE_EVENT_FLUSH,
@@ -468,7 +472,7 @@ gst::EventPtr NewSeek(GstSeekFlags flags, std::pair<GstSeekType, gint64> start,
                                           stop.first, stop.second));
 }
 
-/// A segment of ten seconds, played up to 1 s.
+/// Returns a segment of ten seconds that was played up to 1 s.
 GstSegment PlayedSegment() {
   GstSegment segment;
   gst_segment_init(&segment, GST_FORMAT_TIME);
@@ -494,7 +498,7 @@ TEST(SeekOfAPlayer, GoesOnFromWhatWasPlayedMeanwhile) {
     GstSegment begun = seek.Begun(*made, played);
     EXPECT_EQ(begun.position, position);
     EXPECT_EQ(gst_segment_to_running_time(&begun, GST_FORMAT_TIME, position), 2 * GST_SECOND);
-    // The position may be past the segment's end, too.
+    // The position may also be later than the end of the segment.
     played.position = 7 * GST_SECOND;
     begun = seek.Begun(*made, played);
     EXPECT_EQ(begun.position, start == here ? GstClockTime{6 * GST_SECOND} : position);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What goes into mcapsink comes out of mcapsrc.
+// Tests that mcapsrc plays what mcapsink has recorded.
 #include "gst/common/imu_caps.h"
 #include "src/base/byte_writer.h"
 #include "src/cdr/point_cloud2.h"
@@ -58,7 +58,7 @@ TEST_F(Mcap, CloudsComeBackWithTheirCaps) {
   EXPECT_EQ(played.caps.at("see"), recorded.caps.at("see"));
 }
 
-/// Records `buffers` of `caps`, and returns what is played.
+/// Records `buffers` with `caps`. Returns the buffers that are played from the recording.
 std::vector<Kept> ThroughFile(const std::string& path, const char* caps,
                               const std::vector<GstBuffer*>& buffers) {
   {
@@ -184,8 +184,8 @@ TEST_F(Mcap, ASparseStreamDoesNotHoldUpTheOthers) {
     gst_harness_push_event(h.get(), gst_event_new_eos());
     gst_harness_push_event(late, gst_event_new_eos());
   }
-  // Without gaps the sink of the late stream would wait for ever, and the queue before the other
-  // sink would fill up.
+  // Without gap events, the sink of the stream that begins late would wait for ever. The queue
+  // before the other sink would then fill up.
   const auto played = Play("mcapsrc name=m" + At("a.mcap") +
                            " m.src_0 ! queue max-size-buffers=10 ! fakesink name=see0 m.src_1 ! "
                            "queue ! fakesink name=see1");
@@ -259,7 +259,7 @@ TEST_F(Mcap, CountsAnewAfterReady) {
   Record(2, "", "a.mcap");
   Pipeline p("mcapsrc name=m" + At("a.mcap") + " fakesrc num-buffers=1 ! fakesink");
   for (int round = 0; round < 2; ++round) {
-    // The first message fails, because the pad is not linked.
+    // Playing the first message fails, because the pad is not linked.
     EXPECT_EQ(p.Run(GST_MESSAGE_ERROR).stats.at("messages"), 1U);
   }
 }
@@ -270,14 +270,16 @@ TEST_F(Mcap, PlaysAgainAfterReady) {
   for (int round = 0; round < 3; ++round) {
     p.Forget();
     gst_element_set_state(p.get(), GST_STATE_PLAYING);
-    // Each start makes a new pad, so a link that waits for its signal must be made again.
+    // Each start makes a new pad, but gst_parse_launch() links only the first one. Therefore only
+    // the first round has buffers.
     ASSERT_TRUE(p.Wait(round == 0 ? GST_MESSAGE_EOS : GST_MESSAGE_ANY));
     if (round == 0) ExpectSame(p.outcome().buffers.at("see"), written);
     gst_element_set_state(p.get(), GST_STATE_READY);
   }
 }
 
-/// A recording of another program: clouds of one layout, with big-endian doubles.
+/// A fixture with a recording of another program. Its clouds have one layout, with big-endian
+/// doubles.
 class McapOfOthers : public Mcap {
  protected:
   void Record(const std::vector<cdr::PointCloud2>& clouds, const std::string& caps = "") {
@@ -318,7 +320,8 @@ TEST_F(McapOfOthers, CloudsBecomeOurs) {
   }
   cdr::PointCloud2 cloud = Cloud(2);
   cloud.data = {points.data(), points.size()};
-  // Empty clouds are left out, and so is a cloud that claims more points than it has.
+  // Empty clouds are not played, and neither is a cloud that claims to have more points than its
+  // data.
   Record({Cloud(0), Cloud(0), Cloud(1U << 24), cloud});
   const auto played = Play("mcapsrc" + At("other.mcap") + " ! fakesink name=see");
   EXPECT_EQ(played.error, "");
@@ -362,7 +365,8 @@ TEST_F(McapOfOthers, CloudsHaveTheFieldsOfTheirOwnMessages) {
       << played.caps.at("see");
 }
 
-/// Another program may have reduced our clouds, and copied the channel's other metadata.
+/// Another program may have removed fields from our clouds, but copied the other metadata of the
+/// channel.
 TEST_F(McapOfOthers, CloudsOfAnotherLayoutThanTheRecordedCapsAreThoseOfTheirMessages) {
   const auto recorded = Play(kSensor + " num-buffers=1 slices-per-scan=1 ! fakesink name=see");
   const std::string ours = recorded.caps.at("see");
@@ -387,7 +391,7 @@ TEST_F(McapOfOthers, NoMorePadsComeOnceAllAreThere) {
   cloud.data = {points.data(), points.size()};
   Record({cloud, cloud});
   Pipeline p("mcapsrc name=m" + At("other.mcap") + " ! fakesink name=see");
-  guint pads = 0;  // at the time of no-more-pads
+  guint pads = 0;  // number of pads when the signal no-more-pads is emitted
   g_signal_connect(p.Find("m").get(), "no-more-pads",
                    G_CALLBACK(+[](GstElement* m, guint* n) { *n = m->numsrcpads; }), &pads);
   EXPECT_EQ(p.Run().error, "");
@@ -400,7 +404,8 @@ TEST_F(Mcap, CloudsOfAnyWidthHaveOneChannel) {
   EXPECT_EQ(recorded.error, "");
   const std::string bytes = ReadFile(Path("clouds.mcap"));
   std::size_t channels =
-      0;  // the caps are in each channel record: in its chunk, and in the summary
+      // The caps are in each channel record. There is one in the chunk, and one in the summary.
+      0;
   for (std::size_t at = 0; (at = bytes.find("application/x-pointcloud2", at)) != std::string::npos;
        ++at)
     ++channels;

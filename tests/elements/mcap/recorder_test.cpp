@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Where one file of a recording ends and the next begins, and which files stay.
+// Tests of where a file of a recording ends and the next file begins, and of which files are kept.
 #include "ext/mcap/recorder.h"
 #include "tests/support/files.h"
 #include "tests/support/small_disk.h"
@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Prevents the opening of files during its lifetime.
+/// Prevents the process from opening files during the lifetime of the object.
 class NoDescriptors {
  public:
   NoDescriptors() {
@@ -72,14 +72,14 @@ TEST_F(Pieces, EndAtTheirAgeWithTheNextScanOrAnEighthLaterWithAnyMessage) {
   settings.max_file_duration = Duration{800};
   const auto recorder = Make(settings);
   Add(recorder.get(), 1000, true);
-  Add(recorder.get(), 1799, true);   // not yet
-  Add(recorder.get(), 1899, false);  // late, but no beginning of a scan
+  Add(recorder.get(), 1799, true);   // the file is not old enough yet
+  Add(recorder.get(), 1899, false);  // old enough, but this is not the beginning of a scan
   EXPECT_TRUE(Messages(recorder.get()).empty());
-  Add(recorder.get(), 1900, false);  // an eighth of the duration too late
+  Add(recorder.get(), 1900, false);  // late by an eighth of the duration
   EXPECT_EQ(Messages(recorder.get()), (std::vector<std::uint64_t>{3}));
   Add(recorder.get(), 2699, true);
   EXPECT_TRUE(Messages(recorder.get()).empty());
-  Add(recorder.get(), 2700, true);  // 800 after the second file began
+  Add(recorder.get(), 2700, true);  // 800 after the beginning of the second file
   EXPECT_EQ(Messages(recorder.get()), (std::vector<std::uint64_t>{2}));
   EXPECT_FALSE(recorder->Finish());
   EXPECT_EQ(Messages(recorder.get()), (std::vector<std::uint64_t>{1}));
@@ -90,7 +90,7 @@ TEST_F(Pieces, EndAtTheirAgeWithTheNextScanOrAnEighthLaterWithAnyMessage) {
 TEST_F(Pieces, AFileWhoseEndDoesNotFitOnTheDiskIsNotComplete) {
   const auto recorder = Make({});
   Add(recorder.get(), 0, true);
-  Add(recorder.get(), 10'000'000'000, true);  // after the first chunk
+  Add(recorder.get(), 10'000'000'000, true);  // this comes after the first chunk
   const test::SmallDisk disk(1);
   EXPECT_TRUE(recorder->Finish());
   EXPECT_EQ(recorder->chunks(), 1U);

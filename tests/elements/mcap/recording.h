@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Pipelines that record and play, run to their end.
+// Pipelines that record and play, which tests run to their end.
 #pragma once
 #include <gst/gst.h>
 #include <gtest/gtest.h>
@@ -25,14 +25,15 @@ namespace lidar::test {
 
 constexpr GstClockTime kCapture = GstClockTime{1'764'000'000} * GST_SECOND;
 
-/// Returns an mcapsink with one stream. The location is set before the harness starts the element.
+/// Returns an mcapsink with one stream. The harness starts the element, so the location is set
+/// before.
 inline Harness RecordingTo(const std::string& path) {
   const gst::ElementPtr sink(gst_element_factory_make("mcapsink", nullptr));
   g_object_set(sink.get(), "location", path.c_str(), nullptr);
   return Harness(gst_harness_new_with_element(sink.get(), "sink_0", nullptr));
 }
 
-/// A buffer that a test keeps.
+/// The content of a buffer that a test stores.
 struct Kept {
   std::string bytes;
   GstClockTime pts = 0;
@@ -66,7 +67,7 @@ inline Kept Keep(GstBuffer* buffer) {
   return kept;
 }
 
-/// What mcapsink reports of a complete file.
+/// The content of mcapsink's message about a complete file.
 struct CompleteFile {
   std::string location;
   guint64 messages = 0;
@@ -75,7 +76,7 @@ struct CompleteFile {
   guint64 end_time = 0;
 };
 
-/// Expects that the buffers written were played, from time 0 on.
+/// Expects that exactly the written buffers were played, and that their times begin at 0.
 inline void ExpectSame(const std::vector<Kept>& read, const std::vector<Kept>& written) {
   ASSERT_EQ(read.size(), written.size());
   for (std::size_t i = 0; i < read.size(); ++i) {
@@ -85,21 +86,21 @@ inline void ExpectSame(const std::vector<Kept>& read, const std::vector<Kept>& w
   }
 }
 
-/// What a pipeline did.
+/// The results of a pipeline.
 struct Outcome {
-  std::map<std::string, std::vector<Kept>> buffers;  // by the names of fakesinks and identities
+  std::map<std::string, std::vector<Kept>> buffers;  // by the name of the fakesink or identity
   std::map<std::string, std::string> caps;
-  std::string error;  // empty at EOS
+  std::string error;  // empty after EOS
   std::string warning;
   std::map<std::string, std::vector<std::pair<GstClockTime, GstClockTime>>> gaps;  // [ms]
   gint64 segment_done = -1;
   std::vector<CompleteFile> complete;
-  std::map<std::string, guint64> stats;  // of mcapsrc or mcapsink
+  std::map<std::string, guint64> stats;  // statistics of mcapsrc or mcapsink
 };
 
 class Pipeline {
  public:
-  /// Keeps the buffers of elements whose names begin with "see".
+  /// Makes the pipeline. It stores the buffers of elements whose names begin with "see".
   explicit Pipeline(const std::string& description) {
     GError* raw = nullptr;
     pipeline_.reset(gst_parse_launch(description.c_str(), &raw));
@@ -121,7 +122,7 @@ class Pipeline {
     return gst::ElementPtr(gst_bin_get_by_name(GST_BIN(pipeline_.get()), name));
   }
 
-  /// Plays until EOS, an error or `until`, and stops.
+  /// Plays until EOS, an error or a message of type `until`. Then stops the pipeline.
   Outcome Run(GstMessageType until = GST_MESSAGE_EOS) {
     gst_element_set_state(pipeline_.get(), GST_STATE_PLAYING);
     Wait(until);
@@ -129,14 +130,15 @@ class Pipeline {
     gst_element_set_state(pipeline_.get(), GST_STATE_NULL);
     return outcome();
   }
-  /// Waits until a number of the statistics is reached. Returns false if that takes too long.
+  /// Waits until the statistic `name` is at least `least`. Returns false if that takes too long.
   bool AwaitStat(const char* name, guint64 least) {
     const gint64 end = g_get_monotonic_time() + kPatience_us;
     for (; outcome_.stats[name] < least && g_get_monotonic_time() < end; TakeStats())
       g_usleep(2000);
     return outcome_.stats[name] >= least;
   }
-  /// Returns true once a message `until` comes, and false at an error or without messages.
+  /// Waits for a message of type `until`. Returns false if an error is posted first or if no
+  /// message comes.
   bool Wait(GstMessageType until) {
     const ElementBus bus(pipeline_.get());
     bool good = false;
@@ -156,7 +158,7 @@ class Pipeline {
     const std::lock_guard lock(mutex_);
     return outcome_;
   }
-  /// Drops the buffers, gaps and error so far.
+  /// Forgets the buffers, gaps and errors so far.
   void Forget() {
     const std::lock_guard lock(mutex_);
     outcome_.buffers.clear();
@@ -237,7 +239,8 @@ class Pipeline {
   }
 
   gst::ElementPtr pipeline_;
-  mutable std::mutex mutex_;  // guards buffers, caps and gaps: each stream has a thread
+  // Guards the buffers, caps and gaps, because each stream has a thread of its own.
+  mutable std::mutex mutex_;
   Outcome outcome_;
 };
 
@@ -254,7 +257,7 @@ class Recording : public FolderTest {
     std::sort(names.begin(), names.end());
     return names;
   }
-  /// Records `scans` scans of the synthetic sensor as coded slices, and returns those slices.
+  /// Records `scans` scans of the synthetic sensor as coded slices. Returns the slices.
   std::vector<Kept> Record(int scans, const std::string& options, const std::string& name) {
     const auto outcome =
         Play(kSensor + " num-buffers=" + std::to_string(8 * scans) +
@@ -266,7 +269,7 @@ class Recording : public FolderTest {
   }
 
   const std::string kSensor = "lidartestsrc model=os1-32 mode=512x10";
-  std::string caps_;  // of what Record() wrote
+  std::string caps_;  // caps of what Record() wrote last
   std::vector<CompleteFile> files_;
 };
 

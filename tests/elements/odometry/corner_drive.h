@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Scans of a drive along a corner, a far wall that fits none of them, and samples of an IMU at
-// rest.
+// Scans of a drive along a corner of walls, a scan of a far wall that matches none of them, and
+// samples of an IMU at rest.
 #pragma once
 #include <array>
 #include <vector>
@@ -19,8 +19,8 @@ inline constexpr const char* kCornerCaps =
     "fields=(string)\"x:F32:0,y:F32:4,z:F32:8,t:F32:12\",framerate=10/1";
 inline constexpr GstClockTime kCornerPeriod = 100 * GST_MSECOND;
 
-/// A corner of three walls, from 2 to 19 m away, seen by a sensor that moves along x at 10 m/s and
-/// samples one wall after the other.
+/// Returns a scan of a corner of three walls, which are 2 to 19 m away. The sensor moves along x at
+/// 10 m/s and measures one wall after the other.
 inline gst::BufferPtr CornerFrom(double metres) {
   std::vector<std::uint8_t> bytes;
   ByteWriter w(&bytes);
@@ -51,7 +51,7 @@ inline gst::BufferPtr SliceOf(gst::BufferPtr buffer, const GstLidarSlice& slice)
   return buffer;
 }
 
-/// A wall 80 m ahead, which shows no motion to the side.
+/// Returns a scan of a wall 80 m ahead. Such a scan does not show any motion to the side.
 inline gst::BufferPtr FarWall() {
   std::vector<std::uint8_t> bytes;
   ByteWriter w(&bytes);
@@ -61,7 +61,7 @@ inline gst::BufferPtr FarWall() {
   return gst::BufferPtr(gst_buffer_new_memdup(bytes.data(), bytes.size()));
 }
 
-/// Begins a stream of samples on `pad`, in the axes of the sensor.
+/// Begins a stream of IMU samples on `pad`. The IMU has the same axes as the sensor.
 inline void BeginImu(GstPad* pad) {
   gst_pad_send_event(pad, gst_event_new_stream_start("imu"));
   gst_pad_send_event(
@@ -70,7 +70,7 @@ inline void BeginImu(GstPad* pad) {
   gst_pad_send_event(pad, NewSegment());
 }
 
-/// Returns ten samples of an IMU at rest, 10 ms apart.
+/// Returns ten samples of an IMU at rest. They are 10 ms apart and begin at `from`.
 inline gst::BufferPtr StillnessAt(GstClockTime from) {
   std::vector<std::uint8_t> bytes;
   for (unsigned i = 0; i < 10; ++i) {

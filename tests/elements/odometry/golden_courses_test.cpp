@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Golden files hold what lidarodometry outputs, sends and posts in scripted runs.
+// Compares what lidarodometry outputs, sends and posts in scripted runs with a golden file.
 #include "tests/support/golden_course.h"
 
 #include "tests/elements/odometry/corner_drive.h"
@@ -7,7 +7,8 @@
 namespace lidar::test {
 namespace {
 
-/// Sinks for the poses and for the map's poses, and the pad for the IMU's samples.
+/// The other pads of lidarodometry: harnesses for the poses and for the map's poses, and the pad to
+/// which samples of the IMU are sent.
 struct SidePads {
   explicit SidePads(Course* c)
       : poses(gst_harness_new_with_element(c->element(), nullptr, "odometry")),
@@ -67,7 +68,7 @@ void OdometryCourse(Course& c) {
   c.End();
 }
 
-/// Bytes are left out: the last digits of poses differ between machines.
+/// The bytes of buffers are not compared, because the last digits of poses differ between machines.
 const std::size_t kOdometryCourses =
     AddGoldenCourses("OdometryGoldenCourses", {{"odometry", "lidarodometry", OdometryCourse}},
                      GOLDEN_COURSES_FOLDER, false);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// lidarodometry's pad for an IMU.
+// Tests of lidarodometry's pad for an IMU.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -21,7 +21,8 @@ using test::Harness;
 
 constexpr unsigned kScans = 12;
 
-/// A sensor that stands in a corner of walls, and an IMU that measures no motion.
+/// A fixture with a sensor that does not move, in a corner of walls, and an IMU that measures no
+/// motion.
 class ImuPad : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -57,7 +58,8 @@ class ImuPad : public ::testing::Test {
     if (!gst_pad_send_event(imu_.get(), gst_event_new_caps(caps.get()))) return false;
     return gst_pad_send_event(imu_.get(), test::NewSegment());
   }
-  /// Sends the ten samples of a scan from `start` on, which turn at `rate` about the vertical axis.
+  /// Sends ten samples, which last one scan from `start` on. They measure a rotation at `rate`
+  /// about the vertical axis.
   GstFlowReturn Send(GstClockTime start, double rate) {
     std::vector<std::uint8_t> bytes;
     for (unsigned i = 0; i < 10; ++i) {
@@ -127,7 +129,8 @@ TEST(ImuInput, TakesNothingOnceTheLayoutIsAnother) {
   EXPECT_TRUE(input.Take().empty());
 }
 
-/// Returns the caps of ImuCaps() with another `imu-to-sensor`: zeros, and `one` on the diagonal.
+/// Returns the caps of ImuCaps() with another `imu-to-sensor`. Its `count` numbers are zeros,
+/// except for `one` on the diagonal of the matrix.
 template <class Number>
 CapsPtr CapsWith(GType type, guint count, Number one, void (*set)(GValue*, Number)) {
   GValue list = G_VALUE_INIT;
@@ -179,7 +182,7 @@ TEST_F(ImuPad, DropsPiecesOfSamples) {
   EXPECT_GE(ScansWithImu(0), kScans / 2);
 }
 
-/// A drive through the corners of a town, and how the odometry uses its IMU.
+/// A fixture with a drive through the corners of a town, to test how the odometry uses its IMU.
 class ImuOfADrive : public ::testing::Test {
  protected:
   static constexpr guint64 kDriveScans = 24;

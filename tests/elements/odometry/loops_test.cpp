@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Loop closure: its thread, and how lidarodometry uses the results.
+// Tests of loop closure: its thread, and how lidarodometry uses its results.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -30,7 +30,7 @@ TEST(LoopThread, HasTheDriftOfALapWhenItFinishes) {
   for (std::size_t i = 0; i < drifted.size(); ++i) {
     const int scan = static_cast<int>(i);
     loops.AddScan(drifted[i], block::SeenFrom(block::TrueAt(scan), world, scan));
-    if (i % 50 == 0) loops.Finish();  // so that no scan is dropped
+    if (i % 50 == 0) loops.Finish();  // waits, so that no scan is dropped
   }
   loops.Finish();
   const LoopThread::Progress progress = loops.progress();
@@ -52,13 +52,13 @@ TEST(LoopThread, CountsTheScansThatItDrops) {
   const block::Points world = block::MakeWorld();
   const odometry::Trajectory way = block::Drive(300);
   LoopThread loops({});
-  constexpr int kMostRounds = 100;  // far more than any machine keeps up with
+  constexpr int kMostRounds = 100;  // more rounds than any machine can process in time
   for (int round = 0; round < kMostRounds && loops.progress().scans_dropped == 0; ++round)
     for (const odometry::StampedPose& pose : way) loops.AddScan(pose, world);
   EXPECT_GT(loops.progress().scans_dropped, 0U);
 }
 
-/// A drive through lidarodometry with a sink for the poses of its map.
+/// A fixture that plays a drive through lidarodometry and receives the poses of the map.
 class MapPad : public ::testing::Test {
  protected:
   void Play(unsigned scans, const std::string& properties) {
@@ -99,7 +99,7 @@ class MapPad : public ::testing::Test {
 
 TEST_F(MapPad, SaysWhereTheOdometryIsInTheMapAsRosHasIt) {
   Play(26, "local-maps=10");
-  EXPECT_EQ(poses_, 27U);  // one for each scan, and one at EOS after the last loops
+  EXPECT_EQ(poses_, 27U);  // one per scan, and one at EOS after the last loops
   const GstStructure* s = gst_caps_get_structure(caps_.get(), 0);
   EXPECT_STREQ(gst_structure_get_string(s, "frame-id"), "map");
   EXPECT_STREQ(gst_structure_get_string(s, "child-frame-id"), "odom");
@@ -154,8 +154,8 @@ TEST(MapPadWithoutScans, GivesNoPose) {
   EXPECT_EQ(gst_harness_buffers_received(map.get()), 0U);
 }
 
-/// A drive of laps through lidarodometry. Its sensor measures up to 2 % too far on the far side of
-/// the block, so the odometry drifts by metres a lap.
+/// A fixture with a drive of several laps around a block. On the far side of the block the sensor
+/// measures up to 2 % too far. Therefore the odometry drifts by metres per lap.
 class Laps : public ::testing::Test {
  protected:
   Laps() {
@@ -170,7 +170,7 @@ class Laps : public ::testing::Test {
                                  "application/x-pointcloud2,width=0,height=1,point-step=12,"
                                  "fields=(string)\"x:F32:0,y:F32:4,z:F32:8\",framerate=10/1");
   }
-  /// Waits for the loop thread: sends EOS, and begins a new stream.
+  /// Sends EOS, which waits for the loop thread. Then begins a new stream.
   void FindLoops() {
     gst_harness_push_event(h_.get(), gst_event_new_eos());
     map_from_odometry_ = PullFrom(map_.get());
@@ -202,8 +202,8 @@ class Laps : public ::testing::Test {
     EXPECT_LE(tracking, GST_LIDAR_TRACKING_OK);
     return {Eigen::Quaterniond(pose.orientation.data()), Eigen::Vector3d(pose.position.data())};
   }
-  /// Returns the number of messages about loops since the last call. Expects that the last one has
-  /// the current pose of the map and the current number of loops.
+  /// Returns the number of messages about loops since the last call. Expects that the newest
+  /// message has the current pose of the map and the current number of loops.
   unsigned CountLoopMessages() {
     unsigned count = 0;
     guint64 loops = 0;
@@ -221,13 +221,14 @@ class Laps : public ::testing::Test {
     }
     return count;
   }
-  /// Returns the distance of the last pose, moved by `frame`, from the true one.
+  /// Transforms the last pose of the odometry by `frame`. Returns its distance from the true pose.
   double ErrorOf(const odometry::Pose& frame) const {
     const int scan = static_cast<int>(odometry_.size()) - 1;
     return (frame * odometry_.back().position - block::TrueAt(scan).position).norm();
   }
 
-  /// Scatters the ground of MakeWorld(): a grid would fit itself again after a step.
+  /// Returns MakeWorld() with its ground points moved at random. A regular grid would match itself
+  /// again after it has moved by one step.
   static block::Points WorldWithoutGrid() {
     block::Points world = block::MakeWorld();
     std::mt19937 random(7);
@@ -250,7 +251,7 @@ class Laps : public ::testing::Test {
 TEST_F(Laps, MoveTheMapAndNeverTheOdometry) {
   while (metas_.size() < block::kScansOfALap + 10) {
     DriveOn();
-    if (metas_.size() % 50 == 0) FindLoops();  // so that no scan is dropped
+    if (metas_.size() % 50 == 0) FindLoops();  // waits, so that no scan is dropped
   }
   FindLoops();
   EXPECT_GT(map_from_odometry_.position.norm(), 0.5);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Clouds that no sensor sends, through lidarodometry.
+// Tests of lidarodometry with clouds that no sensor sends.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -33,7 +33,7 @@ class OddClouds : public ::testing::Test {
   GstFlowReturn Push(const std::vector<float>& points, GstClockTime pts) {
     return gst_harness_push(h_.get(), Points(points, pts));
   }
-  /// Returns a floor and two walls.
+  /// Returns the points of a floor and two walls.
   static std::vector<float> Corner() {
     std::vector<float> corner;
     for (int a = -20; a < 20; ++a) {
@@ -48,7 +48,7 @@ class OddClouds : public ::testing::Test {
   guint64 Count(const char* name) { return test::StatOf(h_->element, name); }
   /// Returns the number of warnings since the last call.
   std::size_t CountWarnings() { return bus_->Texts(GST_MESSAGE_WARNING).size(); }
-  /// Returns the time of the last pose message; none without a message.
+  /// Returns the timestamp of the last pose message, or GST_CLOCK_TIME_NONE if there is no message.
   GstClockTime TimeOfMessage() {
     GstClockTime time = GST_CLOCK_TIME_NONE;
     while (const MessagePtr message = bus_->Pop(GST_MESSAGE_ELEMENT))
@@ -67,7 +67,7 @@ TEST_F(OddClouds, MayBeEmptyOrNotFinite) {
   Start(kXyz);
   EXPECT_EQ(Push({}, 0), GST_FLOW_OK);
   EXPECT_EQ(Push({NAN, 1, 2, INFINITY, 0, 0}, GST_SECOND), GST_FLOW_OK);
-  EXPECT_EQ(Push({1, 2}, 2 * GST_SECOND), GST_FLOW_OK);  // less than a point
+  EXPECT_EQ(Push({1, 2}, 2 * GST_SECOND), GST_FLOW_OK);  // fewer bytes than a point has
   EXPECT_EQ(Push({3e38F, 3e38F, 3e38F}, 3 * GST_SECOND), GST_FLOW_OK);
   EXPECT_FALSE(HasError());
 }
@@ -193,7 +193,8 @@ TEST_F(OddClouds, MayHaveSlicesWithoutEnd) {
     ASSERT_EQ(gst_harness_push(h_.get(), buffer), GST_FLOW_OK);
     gst_buffer_unref(gst_harness_pull(h_.get()));
   }
-  EXPECT_EQ(Count("scans"), 1U);  // the first four slices, which have too many points
+  // The first four slices, because they have too many points for a scan.
+  EXPECT_EQ(Count("scans"), 1U);
 }
 
 TEST_F(OddClouds, CutOffByTheNextScanOrTheEndHaveTheirOwnTimestamp) {

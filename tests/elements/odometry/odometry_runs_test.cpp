@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// lidarodometry: each property has an effect, each counter counts, and an element that was stopped
-// behaves as a new one.
+// Tests of lidarodometry: each property has an effect, each counter counts, and an element that was
+// stopped behaves like a new one.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,8 @@
 namespace lidar::test {
 namespace {
 
-/// lidarodometry with sinks for its clouds, poses and map, and with a pad for the IMU's samples.
+/// A lidarodometry with harnesses for its clouds, its poses and its map, and with a pad for the
+/// samples of an IMU.
 class OdometryRun {
  public:
   explicit OdometryRun(const std::string& properties) {
@@ -52,7 +53,7 @@ class OdometryRun {
     trace_->Take();
   }
   void Flush() { trace_->Flush(); }
-  /// Returns what happened, without the time that scans take.
+  /// Returns everything that the element output and posted, without the processor time of scans.
   Lines Take() {
     Lines lines = trace_->Take();
     static const std::regex times("(scan-time=\\(guint64\\))[0-9]+");
@@ -66,7 +67,7 @@ class OdometryRun {
   std::optional<RunTrace> trace_;
 };
 
-/// Reads and removes a file. Returns nothing if there is none.
+/// Reads the file and removes it. Returns an empty string if there is no file.
 std::string TakeFile(const std::string& path) {
   const std::string text = test::ReadFile(path);
   std::remove(path.c_str());
@@ -114,8 +115,8 @@ TEST(OdometryProperties, AreAllInTheTable) {
   ExpectEachPropertyIn(kOdometryEffects, "lidarodometry");
 }
 
-/// Leaves much state behind: lost scans, new maps, an incomplete scan, and unused samples that
-/// would make the next run drop its first samples.
+/// Leaves much state behind: lost scans, new maps, an incomplete scan, and unused samples of the
+/// IMU. If the next run kept these samples, it would drop its own first samples.
 void RunWithTroubles(OdometryRun* run) {
   run->BeginImu();
   for (unsigned i = 0; i < 9; ++i) {
@@ -139,7 +140,7 @@ TEST(OdometrySecondRun, IsAsTheFirst) {
     if (ends) run.End();
     Lines lines = run.Take();
     EXPECT_TRUE(HasLine(lines, "message warning The position was lost"));
-    // The trajectory has a line for each scan.
+    // The trajectory has one line per scan.
     lines.push_back(TakeFile(kRunTrajectory));
     EXPECT_EQ(std::count(lines.back().begin(), lines.back().end(), '\n'), ends ? 26 : 25);
     if (first.empty()) first = lines;

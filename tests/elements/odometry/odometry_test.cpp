@@ -33,7 +33,7 @@ std::string Format(const char* format, unsigned a, unsigned b) {
   return text;
 }
 
-/// Plays a drive at 10 m/s through lidarodometry, to its end.
+/// A fixture that plays a drive at 10 m/s through lidarodometry.
 class Odometry : public ::testing::Test {
  protected:
   void Start(unsigned slices, unsigned scans, const std::string& properties = "") {
@@ -54,7 +54,7 @@ class Odometry : public ::testing::Test {
   }
   StructurePtr Stats() { return test::StatsOf(element_.get()); }
   guint64 Count(const char* name) { return test::StatOf(element_.get(), name); }
-  /// Waits until lidarodometry has ended.
+  /// Waits until lidarodometry has output EOS.
   void WaitForEnd() {
     for (bool ended = false; !ended;) {
       const EventPtr event(gst_harness_pull_event(h_.get()));
@@ -65,7 +65,7 @@ class Odometry : public ::testing::Test {
     double way = 0;  // distance from the origin
     guint64 time = 0;
   };
-  /// Returns the content of each scan's message.
+  /// Returns the contents of the messages about scans since the last call.
   std::vector<Told> TakeMessages() {
     std::vector<Told> all;
     while (const MessagePtr message = bus_->Pop(GST_MESSAGE_ELEMENT)) {
@@ -120,7 +120,8 @@ TEST_F(Odometry, PutsThePoseOnEveryScan) {
   EXPECT_EQ(CountMessages("odometry"), 10U);
 }
 
-/// Returns the distance that the odometry measures over five scans at 20 m/s, behind `coder`.
+/// Returns the distance that the odometry measures over five scans at 20 m/s. The clouds pass
+/// `coder` before.
 double DriveOf(const std::string& model, const char* deskew, const std::string& coder = "") {
   const Harness h(
       gst_harness_new_parse(("lidartestsrc speed=20 num-buffers=7 model=" + model + " ! " + coder +
@@ -152,7 +153,8 @@ TEST_F(Odometry, FollowsCodedCloudsByTheTimesThatComeBack) {
 }
 
 TEST_F(Odometry, BeginsAtItsInitialPose) {
-  // The pose is a quarter turn to the left, so a drive along x goes along y.
+  // The initial pose is turned left by 90 degrees, so a drive along the sensor's x axis goes along
+  // y.
   Start(1, 5, "initial-pose=\"100 20 3 0 0 0.70710678 0.70710678\"");
   const auto scans = PullAll(5);
   GstLidarPose first;
@@ -212,7 +214,7 @@ TEST_F(Odometry, PredictsThePoseOfEachSlice) {
   const auto slices = PullAll(72);
   EXPECT_EQ(Count("scans"), 9U);
   double before = -1;
-  for (unsigned i = 40; i < 72; ++i) {  // the velocity is known by then
+  for (unsigned i = 40; i < 72; ++i) {  // from here on the velocity is known
     GstLidarPose pose;
     ASSERT_TRUE(gst_lidar_buffer_get_pose(slices[i].get(), &pose));
     EXPECT_GT(Distance(pose), before - 0.05) << i;
@@ -222,7 +224,7 @@ TEST_F(Odometry, PredictsThePoseOfEachSlice) {
 }
 
 TEST_F(Odometry, AlignsAScanOfWhichSlicesAreMissing) {
-  // Scan n lacks its slice n.
+  // In scan n, slice n is missing.
   constexpr unsigned kGiven = 8;
   Prepare(8, kGiven);
   const PadPtr sink(gst_element_get_static_pad(element_.get(), "sink"));
@@ -261,7 +263,7 @@ TEST_F(Odometry, WritesTheTrajectory) {
   std::filesystem::remove(path);
 }
 
-/// Stops a pipeline, also if a test returns early.
+/// Stops a pipeline at the end of a test, even if the test returns early.
 struct Stop {
   void operator()(GstElement* pipeline) const { gst_element_set_state(pipeline, GST_STATE_NULL); }
 };

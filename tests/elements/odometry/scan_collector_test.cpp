@@ -16,7 +16,8 @@ constexpr Time kStart{std::chrono::seconds(50)};
 
 class Collector : public ::testing::Test {
  protected:
-  /// Sets clouds of `height` rows: one, or two in organised clouds.
+  /// Sets the format of clouds with `height` rows. Organised clouds have two rows here, others have
+  /// one.
   void Prepare(guint height) {
     info_.height = height;
     info_.point_step = 12;
@@ -26,7 +27,7 @@ class Collector : public ::testing::Test {
     ASSERT_TRUE(collector_.SetInfo(info_));
     height_ = height;
   }
-  /// Adds `width` columns. The x of a point is its index + 1.
+  /// Adds a slice of `width` columns. The x of each point is its index + 1.
   void Add(guint scan, guint index, guint count, Time time, guint width) {
     std::vector<float> points;
     for (guint i = 0; i < width * height_; ++i)
@@ -60,7 +61,7 @@ TEST_F(Collector, TellsWhenEachColumnWasSampled) {
   ASSERT_TRUE(scan);
   EXPECT_EQ(scan->start, kStart);
   EXPECT_EQ(scan->duration, milliseconds(100));
-  // Each half has four columns; both rows of a column have the same time.
+  // Each half of the scan has four columns. Both points of a column have the same time.
   const std::vector<float> phases = {0,   .125, .25,  .375, 0,   .125, .25,  .375,
                                      .5F, .625, .75F, .875, .5F, .625, .75F, .875};
   EXPECT_EQ(scan->points.phases, phases);
@@ -86,8 +87,8 @@ TEST_F(Collector, OfPointsInNoOrderOnlyTheSliceTellsTheTime) {
   EXPECT_TRUE(collector_.Take()->points.phases.empty());
 }
 
-/// Returns the phases of points whose field `field` is in `times`. The first `missing` points have
-/// no return, and no phase.
+/// Returns the phases of points whose field `field` has the values `times`. The first `missing`
+/// points have no return, and therefore no phase.
 template <class T>
 std::vector<float> PhasesWith(const char* field, const std::vector<T>& times,
                               const GstLidarSlice& slice = {7, 0, 1, 0}, std::size_t missing = 0) {
@@ -117,13 +118,15 @@ void ExpectQuarters(const std::vector<float>& phases) {
 }
 
 TEST(PointTimes, AreTakenAsTheDriversGiveThem) {
-  // Ouster and Nebula [ns since the cloud's time], Velodyne [s until the cloud's time].
+  // These are the fields of Ouster and Nebula [ns after the cloud's time], and of Velodyne [s
+  // relative to the cloud's time, which is that of the last point].
   ExpectQuarters(PhasesWith<guint32>("t", {0, 25'000'000, 50'000'000, 75'000'000}));
   ExpectQuarters(PhasesWith<guint32>("time_stamp", {9, 25'000'009, 50'000'009, 75'000'009}));
   ExpectQuarters(PhasesWith<float>("time", {-0.075F, -0.05F, -0.025F, 0}));
-  // Livox's own messages [ns since the cloud's time].
+  // This is the field of Livox's own messages [ns after the cloud's time].
   ExpectQuarters(PhasesWith<guint32>("offset_time", {0, 25'000'000, 50'000'000, 75'000'000}));
-  // Hesai and RoboSense [s since 1970], Livox [ns since 1970], a sensor without a clock [us].
+  // These are the fields of Hesai and RoboSense [s since 1970], of Livox [ns since 1970], and of a
+  // sensor without a clock [us].
   constexpr double kNow = 1'700'000'000;
   ExpectQuarters(PhasesWith<double>("timestamp", {kNow, kNow + .025, kNow + .05, kNow + .075}));
   ExpectQuarters(PhasesWith<double>(
@@ -208,7 +211,7 @@ TEST(Rings, AreLeftOutWhereTheirFieldHoldsNoSmallNumbers) {
 
 TEST_F(Collector, ANewScanBeginsWithItsIdOrWithASliceThatCameAlready) {
   Prepare(2);
-  EXPECT_FALSE(collector_.BeginsNewScan({7, 0, 4, 0}));  // no scan is open
+  EXPECT_FALSE(collector_.BeginsNewScan({7, 0, 4, 0}));  // there is no open scan
   Add(7, 1, 4, kStart, 4);
   EXPECT_FALSE(collector_.complete());
   EXPECT_FALSE(collector_.BeginsNewScan({7, 2, 4, 0}));
@@ -234,7 +237,7 @@ TEST_F(Collector, AScanLastsAsLongAsTheFramerateSays) {
   ASSERT_TRUE(collector_.SetInfo(info_));
   Add(7, 0, 1, kStart, 4);
   EXPECT_EQ(collector_.Take()->duration, milliseconds(50));
-  info_.framerate_n = 0;  // unknown
+  info_.framerate_n = 0;  // the frame rate is unknown
   ASSERT_TRUE(collector_.SetInfo(info_));
   Add(8, 0, 1, kStart, 4);
   EXPECT_EQ(collector_.Take()->duration, milliseconds(100));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Stream configs that change, or that no decoder of this set can decode.
+// Tests of stream configs that change, and of configs for which this project has no decoder.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ GstBuffer* RtpOf(const std::vector<std::uint8_t>& payload, guint32 ssrc, guint16
   return buffer;
 }
 
-/// Returns a payload with one unit.
+/// Returns an RTP payload that consists of one unit.
 std::vector<std::uint8_t> PayloadOf(const rtp::Unit& unit, const std::vector<std::uint8_t>& bytes) {
   auto payload = rtp::Packetize(unit, {bytes.data(), bytes.size()}, 1'400).at(0).header;
   payload.insert(payload.end(), bytes.begin(), bytes.end());
@@ -42,7 +42,8 @@ std::vector<std::uint8_t> ConfigPayload(const char* fields, std::uint8_t* id) {
   return PayloadOf(unit, bytes);
 }
 
-/// Returns a config of `fields` as the packet just before `next`.
+/// Returns a packet with a config for `fields`. Its sequence number is the one before that of
+/// `next`.
 GstBuffer* ConfigBefore(GstBuffer* next, const char* fields) {
   std::uint8_t id = 0;
   GstRTPBuffer rtp = GST_RTP_BUFFER_INIT;
@@ -53,7 +54,7 @@ GstBuffer* ConfigBefore(GstBuffer* next, const char* fields) {
   return buffer;
 }
 
-/// Notes, for each buffer that leaves, the fields in its caps.
+/// Notes, for each buffer that leaves the pad, the fields in the pad's caps.
 GstPadProbeReturn NoteFields(GstPad* pad, GstPadProbeInfo* info, gpointer data) {
   const guint buffers = (info->type & GST_PAD_PROBE_TYPE_BUFFER_LIST) != 0
                             ? gst_buffer_list_length(GST_PAD_PROBE_INFO_BUFFER_LIST(info))
@@ -75,7 +76,7 @@ TEST(RtpLidarDepay, SlicesOfTwoConfigsInOnePacketLeaveEachUnderItsCaps) {
       src.get(),
       static_cast<GstPadProbeType>(GST_PAD_PROBE_TYPE_BUFFER | GST_PAD_PROBE_TYPE_BUFFER_LIST),
       NoteFields, &seen, nullptr);
-  std::vector<std::uint8_t> packet = {0x20};  // an aggregate
+  std::vector<std::uint8_t> packet = {0x20};  // payload of an aggregate
   for (std::uint16_t i = 0; i < 2; ++i) {
     rtp::Unit unit;
     gst_harness_push(h.get(), RtpOf(ConfigPayload(fields[i].c_str(), &unit.config_id), 7, i));
@@ -88,8 +89,8 @@ TEST(RtpLidarDepay, SlicesOfTwoConfigsInOnePacketLeaveEachUnderItsCaps) {
   EXPECT_EQ(seen, fields);
 }
 
-/// Returns an aggregate of `slices` slices whose configs alternate. `ids` are of configs sent
-/// before.
+/// Returns an aggregate of `slices` slices. Their configs alternate between `ids`, which are ids of
+/// configs that were sent before.
 std::vector<std::uint8_t> TakingTurns(const std::vector<std::uint8_t>& ids, std::uint32_t scan,
                                       std::uint16_t slices) {
   std::vector<std::uint8_t> packet = {0x20};
@@ -114,7 +115,7 @@ TEST(RtpLidarDepay, ChangesCapsNoMoreThanOnceASecondForAStreamThatTakesTurns) {
   guint64 changes = 0;
   std::size_t pushed = 0;
   std::size_t behind_dropped = 0;
-  for (std::uint32_t scan = 0; scan < 100; ++scan) {  // 10 s
+  for (std::uint32_t scan = 0; scan < 100; ++scan) {  // 10 s of scans
     GstBuffer* packet = RtpOf(TakingTurns(ids, scan, 32), 7, sequence++);
     GST_BUFFER_PTS(packet) = scan * 100 * GST_MSECOND;
     ASSERT_EQ(gst_harness_push(h.get(), packet), GST_FLOW_OK);
@@ -182,7 +183,8 @@ TEST(RtpLidarDepay, DropsSlicesForAnotherDecoderAndGoesOn) {
   EXPECT_EQ(warnings, 1U);
 }
 
-/// A flush begins while the element offers its caps, and the next element refuses them.
+/// A flush begins while the element offers its caps, which the next element refuses. During a
+/// flush, a refusal must not cause a warning.
 TEST(RtpLidarDepay, WarnsOfNoDecoderWhereAFlushBegins) {
   const Harness h(gst_harness_new("rtplidardepay"));
   gst_harness_set_sink_caps_str(h.get(), "application/x-other");
@@ -209,7 +211,7 @@ constexpr const char* kVoxels =
     "framerate=(fraction)10/1, sensor-model=(buffer)0102ff, levels=(uint)7, loss=(double)0.25, "
     "dense=(boolean)true";
 
-/// Returns packets of `scans` scans of a coder that no plugin of this set has.
+/// Returns the packets of `scans` scans. No plugin of this project has a decoder for them.
 std::vector<gst::BufferPtr> PacketsOfVoxels(guint scans) {
   Harness pay(gst_harness_new("rtplidarpay"));
   gst_harness_set_src_caps_str(pay.get(), kVoxels);
@@ -265,7 +267,7 @@ TEST(RtpLidarDepay, SaysOnceThatTheDecoderDoesNotKnowTheCoder) {
                                "but the next element does not accept them. They are dropped."});
 }
 
-/// Warnings of a depayloader whose packets cause the same warning again and again.
+/// A fixture with a depayloader whose packets cause the same warning again and again.
 class OneWarning : public ::testing::Test {
  protected:
   std::size_t Warnings() { return bus_.Texts(GST_MESSAGE_WARNING).size(); }
@@ -274,7 +276,7 @@ class OneWarning : public ::testing::Test {
     gst_element_set_state(h_->element, GST_STATE_PLAYING);
     gst_harness_set_src_caps_str(h_.get(), kRtpCaps);
   }
-  /// Repeats `cause`, and expects one warning in each run of the element.
+  /// Calls `cause` repeatedly in two runs of the element. Expects one warning in each run.
   template <class Cause>
   void ExpectOne(const Cause& cause) {
     for (int run = 0; run < 2; ++run) {
@@ -339,7 +341,7 @@ TEST_F(OneWarning, OfPacketsThatCannotBeRead) {
 TEST(RtpLidarDepay, SaysOnceThatNothingCanBeRead) {
   const Harness h = Depay();
   const ElementBus bus(h->element);
-  for (std::uint16_t i = 0; i < 60; ++i) {  // packets of pseudo-random bytes
+  for (std::uint16_t i = 0; i < 60; ++i) {  // payloads of pseudo-random bytes
     std::vector<std::uint8_t> bytes(200);
     for (std::size_t k = 0; k < bytes.size(); ++k)
       bytes[k] = static_cast<std::uint8_t>((i * 7'919U + k * 104'729U) >> 3);

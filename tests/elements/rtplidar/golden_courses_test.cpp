@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What the payloader and the depayloader output, send and post in scripted runs must match the
+// Compares what the payloader and the depayloader output, send and post in scripted runs with
 // golden files.
 #include <gtest/gtest.h>
 
@@ -22,7 +22,8 @@ gst::BufferPtr Bare(gst::BufferPtr slice) {
       gst_buffer_copy_region(slice.get(), GST_BUFFER_COPY_MEMORY, 0, static_cast<gsize>(-1)));
 }
 
-/// Reports the packets from `first` to `last` packets before the newest one.
+/// Sends an event that says that some packets arrived. `first` and `last` count back from the
+/// newest packet.
 void Tell(Course& c, guint receiver, guint first, guint last) {
   guint newest = 0;
   g_object_get(c.element(), "seqnum", &newest, nullptr);
@@ -164,7 +165,7 @@ void AggregatesCourse(Course& c) {
   c.End();
 }
 
-/// Downstream refuses the caps, and later accepts them.
+/// Downstream first refuses the caps. Later it accepts them.
 void RefusedCourse(Course& c) {
   const auto packets = CoursePackets(4, 300);
   gst_harness_set_sink_caps_str(c.harness(), "application/x-other");

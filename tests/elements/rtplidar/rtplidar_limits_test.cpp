@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Limits of payloader and depayloader, and their state after a flush or a restart.
+// Tests of the limits of payloader and depayloader, and of their state after a flush or a restart.
 #include <gtest/gtest.h>
 
 #include "tests/elements/rtplidar/slices.h"
@@ -20,7 +20,7 @@ class PayLimits : public ::testing::Test {
     gst_lidar_buffer_set_slice(buffer, &meta);
     return gst_harness_push(h_.get(), buffer);
   }
-  /// Returns the number of configs that were sent since the last call.
+  /// Returns the number of config packets that were sent since the last call.
   std::size_t Configs() {
     std::size_t n = 0;
     for (const Rtp& p : PullAll(h_.get())) n += p.IsConfig() ? 1U : 0U;
@@ -39,7 +39,7 @@ class PayLimits : public ::testing::Test {
 TEST_F(PayLimits, TheConfigIsRepeatedOnceItsIntervalIsOver) {
   Push(0, 0);
   EXPECT_EQ(Configs(), 1U);
-  Push(9, 3);  // 975 ms
+  Push(9, 3);  // pushed at 975 ms
   EXPECT_EQ(Configs(), 0U);
   Push(10, 0);
   EXPECT_EQ(Configs(), 1U);
@@ -91,7 +91,8 @@ TEST_F(PayLimits, BoundsAreThoseOfTheirRunAlone) {
   gst_harness_push_event(h_.get(), gst_lidar_event_new_bitrate_bounds(&bounds));
   for (guint scan = 0; scan < 50; ++scan) Push(scan, 0, 30);
   EXPECT_GE(bounds_sent(), 2U) << "headers are more than was guessed";
-  for (const bool active : {false, true}) gst_pad_set_active(h_->srcpad, active);  // forgets events
+  // Makes the pad forget its sticky events.
+  for (const bool active : {false, true}) gst_pad_set_active(h_->srcpad, active);
   Restart();
   for (guint scan = 0; scan < 50; ++scan) Push(scan, 0, 30);
   EXPECT_EQ(bounds_sent(), 0U) << "the encoder has told none in this run";
@@ -111,7 +112,7 @@ TEST_F(PayLimits, WhatWasCollectedGoesFirstWhereAggregationEnds) {
   Push(0, 1);
   const auto packets = PullAll(h_.get());
   ASSERT_EQ(packets.size(), 3U);
-  EXPECT_EQ(packets[1].payload[15], 0);  // the slice's index
+  EXPECT_EQ(packets[1].payload[15], 0);  // index of the slice
   EXPECT_EQ(packets[2].payload[15], 1);
 }
 
@@ -126,7 +127,7 @@ TEST_F(PayLimits, ScansAreCountedAndThoseWithoutAMetaNumbered) {
       gst_buffer_memset(buffer, 0, 0, 100);
       GST_BUFFER_PTS(buffer) = scan * GST_MSECOND;
       gst_harness_push(h_.get(), buffer);
-      EXPECT_EQ(PullAll(h_.get()).back().payload[21], scan);  // the scan's id
+      EXPECT_EQ(PullAll(h_.get()).back().payload[21], scan);  // id of the scan
     }
     EXPECT_EQ(Stat(h_.get(), "scans-sent"), 3U);
   }
@@ -208,10 +209,10 @@ TEST_F(PayLimits, AFlushForgetsWhatWasCollected) {
   gst_harness_push_event(h_.get(), gst_event_new_eos());
   const auto packets = PullAll(h_.get());
   ASSERT_EQ(packets.size(), 2U);
-  EXPECT_EQ(packets[1].payload[15], 1);  // the slice's index
+  EXPECT_EQ(packets[1].payload[15], 1);  // index of the slice
 }
 
-/// A depayloader, and packets that a test may change.
+/// A fixture with a depayloader. Tests may change the packets that it gets.
 class DepayLimits : public ::testing::Test {
  protected:
   static std::vector<gst::BufferPtr> Packets(guint scans) {
@@ -233,7 +234,7 @@ class DepayLimits : public ::testing::Test {
     GST_BUFFER_PTS(copy) = pts;
     gst_harness_push(h_.get(), copy);
   }
-  /// Returns the number of slices that came out since the last call.
+  /// Returns the number of slices that the depayloader has output since the last call.
   std::size_t Slices() {
     std::size_t n = 0;
     while (const gst::BufferPtr slice{gst_harness_try_pull(h_.get())}) ++n;
@@ -248,7 +249,8 @@ TEST_F(DepayLimits, APacketOfBeforeDoesNotTurnTheTimeBack) {
   const auto stream = Packets(3), another = Packets(3);
   for (std::size_t i = 0; i + 1 < stream.size(); ++i) Push(stream[i], 10 * GST_SECOND);
   Push(stream.back(), GST_SECOND);
-  // The stream is not silent, so another stream would need to send for longer to replace it.
+  // The late packet must not make the stream seem silent. Therefore another stream would have to
+  // send for longer before it replaces this stream.
   for (const auto& packet : another) Push(packet, 10 * GST_SECOND);
   EXPECT_EQ(Slices(), 12U);
   EXPECT_EQ(Stat(h_.get(), "sender-restarts"), 0U);

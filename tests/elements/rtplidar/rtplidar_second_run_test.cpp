@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A payloader or depayloader that was stopped or flushed behaves as a new one.
+// Tests that a payloader or depayloader that was stopped or flushed behaves like a new one.
 #include <gtest/gtest.h>
 
 #include "tests/elements/rtplidar/slices.h"
@@ -10,7 +10,7 @@ namespace {
 
 void Give(GstHarness* h, GstBuffer* buffer) { gst_pad_push(h->srcpad, buffer); }
 
-/// Pushes bitrate bounds and slices, one of them empty. The last aggregate stays incomplete.
+/// Pushes bitrate bounds and slices, of which one is empty. The last aggregate stays incomplete.
 void PayRun(GstHarness* h) {
   const GstLidarBitrateBounds bounds{1'000, 2'000, 3'000};
   gst_pad_push_event(h->srcpad, gst_lidar_event_new_bitrate_bounds(&bounds));
@@ -28,7 +28,8 @@ class PaySecondRun : public ::testing::TestWithParam<bool> {
   }
 
   Harness h_{gst_harness_new("rtplidarpay")};
-  RunTrace trace_{h_.get(), false};  // numbers begin at random
+  // False: without bytes, because sequence numbers begin at random.
+  RunTrace trace_{h_.get(), false};
 };
 
 TEST_P(PaySecondRun, IsAsTheFirst) {
@@ -37,7 +38,7 @@ TEST_P(PaySecondRun, IsAsTheFirst) {
     trace_.Begin(EncodedCaps());
     PayRun(h_.get());
     Lines lines = trace_.Take();
-    // The stats and the SSRC of every payloader are random.
+    // The statistics and the SSRC contain random numbers.
     if (lines.back().rfind("stats", 0) == 0) lines.pop_back();
     for (std::string& line : lines)
       if (line.rfind("event caps", 0) == 0) line.resize(line.find("ssrc"));
@@ -67,8 +68,8 @@ TEST_P(PaySecondRun, BeginsWithTheConfigBehindAFlush) {
 
 INSTANTIATE_TEST_SUITE_P(AloneAndTogether, PaySecondRun, ::testing::Bool());
 
-/// Sends garbage, packets of another payload type and of another sender, and a stream with losses.
-/// The last slice stays incomplete.
+/// A fixture whose Run() pushes garbage, packets with another payload type, packets of another
+/// sender, and a stream with losses. The last slice stays incomplete.
 class DepaySecondRun : public ::testing::Test {
  protected:
   void Run() {
@@ -99,7 +100,7 @@ TEST_F(DepaySecondRun, IsAsTheFirst) {
     const auto warnings = std::count_if(lines.begin(), lines.end(), [](const auto& line) {
       return line.rfind("message warning", 0) == 0;
     });
-    EXPECT_EQ(warnings, 2);  // about the type, and about the other sender
+    EXPECT_EQ(warnings, 2);  // one for the payload type, one for the other sender
     if (run == 0) first = lines;
     EXPECT_EQ(lines, first);
     trace_.Stop();

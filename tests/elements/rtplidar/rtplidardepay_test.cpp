@@ -14,7 +14,7 @@ TEST(RtpLidarDepay, TellsSlicesThatWereNeverSentFromLostOnes) {
     Harness pay(gst_harness_new("rtplidarpay"));
     g_object_set(pay->element, "aggregate", aggregate, nullptr);
     gst_harness_set_src_caps_str(pay.get(), EncodedCaps().c_str());
-    // Slice 1 of each scan is left out, and so is all of scan 3.
+    // The encoder skips slice 1 of each scan, and all of scan 3.
     for (guint s = 0; s < 6; ++s)
       for (guint i = 0; i < kSlices; ++i)
         if (s != 3 && i != 1) gst_harness_push(pay.get(), EncodedSlice(s, i, 200));
@@ -24,8 +24,8 @@ TEST(RtpLidarDepay, TellsSlicesThatWereNeverSentFromLostOnes) {
       if (n != 5) gst_harness_push(h.get(), gst_buffer_copy_deep(packets[n].get()));
     gst_harness_push_event(h.get(), gst_event_new_eos());
     const auto slices = Pull(h.get());
-    // Packet 0 is the config. Packet 5 is slice 2 of scan 1, or with aggregates all of the last
-    // scan.
+    // Packet 0 is the config. Packet 5, which is lost, is slice 2 of scan 1. With aggregates, it is
+    // the whole last scan instead.
     EXPECT_EQ(Stat(h.get(), "slices-received"), slices.size());
     EXPECT_EQ(Stat(h.get(), "slices-lost"), aggregate ? 0U : 1U);
     EXPECT_EQ(Stat(h.get(), "slices-skipped"), aggregate ? 4U : 5U);
@@ -67,7 +67,8 @@ TEST(RtpLidarDepay, RestoresSlicesMetasTimesAndCaps) {
   }
 }
 
-/// A slice with all times, and slices that each lack one of them.
+/// The parameter names the time that the slice lacks: 1 the PTS, 2 the duration, 3 the capture
+/// time. With 0, the slice has all of them.
 class SliceWithout : public ::testing::TestWithParam<int> {};
 TEST_P(SliceWithout, ATimeComesOutWithoutItAndWithTheOthers) {
   for (const bool aggregate : {false, true}) {
@@ -159,7 +160,7 @@ TEST(RtpLidarDepay, WarnsOnceOfASecondStreamThatIsDropped) {
   const Harness h = Depay();
   const ElementBus bus(h->element);
   const auto first = Packets(20);
-  const auto second = Packets(20);  // another SSRC, at the same time
+  const auto second = Packets(20);  // a second stream with another SSRC at the same time
   ASSERT_EQ(first.size(), second.size());
   for (std::size_t i = 0; i < first.size(); ++i)
     for (const auto* packets : {&first, &second})
@@ -173,7 +174,7 @@ TEST(RtpLidarDepay, WarnsOnceOfASecondStreamThatIsDropped) {
 TEST(RtpLidarDepay, FollowsASenderThatRestarts) {
   const Harness h = Depay();
   Push(h.get(), Packets(3));
-  auto again = Packets(3);  // another SSRC, other numbers, later
+  auto again = Packets(3);  // sent later, with another SSRC and other sequence numbers
   for (auto& p : again) {
     p.reset(gst_buffer_make_writable(p.release()));
     GST_BUFFER_PTS(p.get()) += 5 * GST_SECOND;
@@ -206,7 +207,7 @@ TEST(RtpLidarDepay, WaitsForPacketsAsLongAsIsSetWhileItRuns) {
   for (const guint64 wait : {100U, 1000U}) {
     const Harness h = Depay();
     auto packets = Packets(8);
-    // Slice 1 of scan 1 comes half a second late.
+    // Slice 1 of scan 1 arrives half a second late.
     std::rotate(packets.begin() + 16, packets.begin() + 19, packets.end());
     for (std::size_t i = 0; i < packets.size(); ++i) {
       if (i == 2) g_object_set(h->element, "max-reorder-time", wait * GST_MSECOND, nullptr);

@@ -123,7 +123,7 @@ TEST(RtpLidarPay, AggregatesTheSmallSlicesOfAScan) {
   EXPECT_EQ(packets[1].payload[0], 0x20);
   EXPECT_TRUE(packets[1].marker);
   EXPECT_EQ(packets[2].payload.size(), 1 + kSlices * (4 + 36 + 200));
-  // The aggregate leaves before a slice that does not fit into it, or at EOS.
+  // An aggregate is sent when the next slice does not fit into it, or at EOS.
   gst_harness_push(h.get(), EncodedSlice(2, 0, 200));
   gst_harness_push(h.get(), EncodedSlice(2, 1, 5'000));
   gst_harness_push(h.get(), EncodedSlice(2, 2, 200));
@@ -137,7 +137,7 @@ TEST(RtpLidarPay, AggregatesTheSmallSlicesOfAScan) {
 TEST(RtpLidarPay, AggregatesNoSlicesOfTwoScans) {
   const Harness h = Pay();
   g_object_set(h->element, "aggregate", TRUE, "config-interval", 0, nullptr);
-  gst_harness_push(h.get(), EncodedSlice(0, 0, 100));  // the encoder left out the rest of the scan
+  gst_harness_push(h.get(), EncodedSlice(0, 0, 100));  // the encoder skipped the rest of this scan
   gst_harness_push(h.get(), EncodedSlice(1, 0, 100));
   gst_harness_push_event(h.get(), gst_event_new_eos());
   const auto packets = PullAll(h.get());
@@ -155,8 +155,8 @@ TEST(RtpLidarPay, HoldsAggregatesNoLongerThanMaxPtime) {
   EXPECT_EQ(gst_harness_query_latency(h.get()), 50 * GST_MSECOND);
 }
 
-/// Slices take 25 ms each. An aggregate lasts from the beginning of its first slice to the end of
-/// its last one.
+/// Each slice lasts 25 ms. The duration of an aggregate is the time from the start of its first
+/// slice to the end of its last slice.
 TEST(RtpLidarPay, CountsTheDurationOfTheLastSliceInMaxPtime) {
   for (const gint64 max_ms : {49, 50, 51}) {
     const Harness h(gst_harness_new("rtplidarpay"));
@@ -215,7 +215,7 @@ TEST(RtpLidarPay, TakesItsHeadersOffTheTargetBitrate) {
     if (gst_lidar_event_parse_target_bitrate(e, &t)) seen.push_back(t);
   }
   ASSERT_EQ(seen.size(), 2U);
-  // The first guess is 10 bytes of header in each full packet.
+  // The payloader first assumes 10 bytes of headers in each full packet.
   EXPECT_NEAR(seen[0].bitrate, 5e6 * (1 - 10.0 / 1'388), 2);
   const double share = static_cast<double>(Stat(h.get(), "slice-bytes")) /
                        static_cast<double>(Stat(h.get(), "payload-bytes"));
@@ -236,8 +236,8 @@ TEST(RtpLidarPay, AddsItsHeadersToTheBoundsOfTheEncoder) {
     GstLidarBitrateBounds bounds{};
     if (gst_lidar_event_parse_bitrate_bounds(event.get(), &bounds)) seen.push_back(bounds);
   }
-  // The bounds are sent first with a guess of the headers' share, then again when the measured
-  // share has changed by more than 2 %.
+  // The first bounds are based on an assumed share of the headers. The bounds are sent again
+  // whenever the measured share has changed by more than 2 %.
   ASSERT_GE(seen.size(), 2U);
   EXPECT_LE(seen.size(), 8U);
   const double share = static_cast<double>(Stat(h.get(), "slice-bytes")) /
@@ -258,7 +258,7 @@ TEST_P(CapsThatNoReceiverCouldUse, AreRefusedWithOneError) {
   gst_harness_push_event(h.get(), NewSegment());
   EXPECT_EQ(gst_harness_push(h.get(), EncodedSlice(0, 0)), GST_FLOW_NOT_NEGOTIATED);
   EXPECT_TRUE(bus.Pop(GST_MESSAGE_ERROR));
-  EXPECT_FALSE(bus.Pop(GST_MESSAGE_ERROR));  // no second error
+  EXPECT_FALSE(bus.Pop(GST_MESSAGE_ERROR));  // there is no second error
   for (const char* next : {"application/x-voxels,alignment=slice", GetParam()})
     gst_harness_set_src_caps_str(h.get(), next);
   EXPECT_TRUE(bus.Pop(GST_MESSAGE_ERROR)) << "they come again behind others";

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Encoded slices without an encoder, parsed RTP buffers, and a depayloader for them.
+// Functions that make encoded slices without an encoder and parse RTP buffers, and a depayloader
+// for the packets.
 #pragma once
 #include <gst/check/gstharness.h>
 #include <gst/rtp/gstrtpbuffer.h>
@@ -35,7 +36,7 @@ inline std::string EncodedCaps(const char* geometry = "range", int framerate = 1
   return text.get();
 }
 
-/// Returns slice `index` of scan `scan` as an encoder outputs it.
+/// Returns slice `index` of scan `scan`, in the form in which an encoder outputs it.
 inline GstBuffer* EncodedSlice(guint scan, guint index, gsize size = 3'000) {
   GstBuffer* buffer = gst_buffer_new_allocate(nullptr, size, nullptr);
   gst_buffer_memset(buffer, 0, static_cast<guint8>(scan * 16 + index), size);
@@ -64,7 +65,7 @@ struct Rtp {
   guint16 sequence = 0;
   guint32 timestamp = 0;
   std::vector<guint8> payload;
-  /// Reads packet type and unit type in the first byte of the payload.
+  /// Returns true if the first byte of the payload has the packet type and unit type of a config.
   bool IsConfig() const { return (payload.at(0) & 31) == 0 && payload.at(0) >> 5 != 1; }
 };
 
@@ -79,7 +80,7 @@ inline guint64 Stat(GstHarness* h, const char* name) { return StatOf(h->element,
 inline constexpr const char* kRtpCaps =
     "application/x-rtp,media=application,clock-rate=90000,encoding-name=X-LIDAR-DRACO,payload=96";
 
-/// Returns the packets of `scans` scans.
+/// Returns the RTP packets of `scans` scans.
 inline std::vector<gst::BufferPtr> Packets(guint scans, gsize size = 3'000,
                                            bool aggregate = false) {
   Harness h(gst_harness_new("rtplidarpay"));
@@ -109,7 +110,7 @@ inline std::vector<gst::BufferPtr> Pull(GstHarness* h) {
   return out;
 }
 
-/// Returns the packets with another payload type.
+/// Returns `packets` with their payload type changed to `type`.
 inline std::vector<gst::BufferPtr> WithType(std::vector<gst::BufferPtr> packets, guint8 type) {
   for (auto& packet : packets) {
     GstRTPBuffer rtp = GST_RTP_BUFFER_INIT;
