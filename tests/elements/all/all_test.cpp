@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Every plugin of the set in one process: what holds for each element.
+// Tests of properties that all elements have in common. All plugins of this project are in one
+// process.
 #include <gst/gst.h>
 #include <gtest/gtest.h>
 #include <malloc.h>
@@ -41,7 +42,8 @@ ElementPtr Make(const std::string& factory) {
   return element;
 }
 
-/// Lets elements listen on ports that the system chooses, because tests run at the same time.
+/// Sets the ports of the element to 0, so that the system chooses free ports. Tests run at the same
+/// time, so fixed ports could be taken.
 void AvoidFixedPorts(GstElement* element) {
   for (const char* name : {"port", "lidar-port", "imu-port", "bind-port"}) {
     GParamSpec* spec = g_object_class_find_property(G_OBJECT_GET_CLASS(element), name);
@@ -68,7 +70,8 @@ TEST_P(EveryElement, ReadsAllItsPropertiesAndTakesItsDefaults) {
       GValue value = G_VALUE_INIT;
       g_value_init(&value, spec->value_type);
       g_object_get_property(G_OBJECT(element.get()), spec->name, &value);
-      // A property of a new element has the value that its page calls the default.
+      // In a new element, each property has the value that the element's documentation calls the
+      // default.
       const bool settable = (spec->flags & G_PARAM_WRITABLE) != 0;
       if (settable && spec->owner_type == G_OBJECT_TYPE(element.get())) {
         EXPECT_TRUE(g_param_value_defaults(spec, &value)) << spec->name;
@@ -96,8 +99,8 @@ TEST_P(EveryElement, HasMetadataThatSaysWhatItIs) {
   }
 }
 
-// An element alone has no peer, and may lack a setting. It may refuse to play, but not to stop and
-// start again.
+// Here an element has no peer, and may lack a setting that it needs. Therefore it may refuse to
+// play. But it must be able to stop and start again.
 TEST_P(EveryElement, GoesUpAndDownAgainAndAgain) {
   const ElementPtr pipeline(gst_pipeline_new(nullptr));
   GstElement* element = gst_element_factory_make(GetParam().c_str(), nullptr);
@@ -113,15 +116,17 @@ TEST_P(EveryElement, GoesUpAndDownAgainAndAgain) {
   }
 }
 
-/// Bytes of the heap that are in use; constant with an allocator that is not glibc's.
+/// Returns the number of heap bytes that are in use. With another allocator than glibc's, the
+/// number is constant.
 std::size_t HeapInUse() { return mallinfo2().uordblks; }
 
-/// Expects that `make_and_free` leaves nothing on the heap.
+/// Expects that repeated calls of `make_and_free` do not increase the memory that is in use.
 template <class MakeAndFree>
 void ExpectNothingLeft(MakeAndFree make_and_free) {
   constexpr std::size_t kTimes = 60;
-  constexpr std::size_t kLeast = 64;  // the smallest state of an element is larger
-  for (std::size_t i = 0; i < kTimes; ++i) make_and_free();  // fills the caches of libraries
+  constexpr std::size_t kLeast = 64;  // smaller than the state of any element
+  // The first calls fill the caches of libraries.
+  for (std::size_t i = 0; i < kTimes; ++i) make_and_free();
   const std::size_t before = HeapInUse();
   for (std::size_t i = 0; i < kTimes; ++i) make_and_free();
   EXPECT_LT(HeapInUse(), before + kTimes * kLeast);
@@ -152,8 +157,8 @@ std::string NameOf(const ::testing::TestParamInfo<std::string>& info) {
   return name;
 }
 
-// The registry is there only after gst_init, so the elements are named here. The test below checks
-// that the list is complete.
+// The list is written here because the registry is available only after gst_init(). The test below
+// checks that the list is complete.
 const std::vector<std::string> kElements = {
     "bitrateadapter",  "lidarenc",      "lidardec",     "dracodec",      "dracoenc",
     "ecnudpsink",      "ecnudpsrc",     "foxglovesink", "lidarodometry", "lidartestsrc",
@@ -187,7 +192,8 @@ TEST_P(EveryBin, LeavesNothingOfTheElementsThatItMade) {
   });
 }
 
-/// A pad of an element, and the pads to which the element passes its events and queries.
+/// A pad of an element, and the pads to which the element forwards the events and queries of this
+/// pad.
 struct PadLinks {
   const char* factory;
   const char* pad;
@@ -233,12 +239,12 @@ TEST_P(LinkedPads, LeadToThePadsOfTheSameData) {
 
 TEST(AllPlugins, LoadIntoOneProcessAndHoldTheseElements) {
   const auto built = OurElements();
-  ASSERT_GE(built.size(), 14U);  // elements that need an external library may be switched off
+  ASSERT_GE(built.size(), 14U);  // elements that need an external library may be missing
   for (const std::string& name : built)
     EXPECT_EQ(std::count(kElements.begin(), kElements.end(), name), 1) << name << " is not listed";
 }
 
-/// Returns false if an optional plugin of the pipeline is not built.
+/// Returns false if the pipeline contains an optional element that is not built.
 bool IsBuilt(const std::string& description) {
   const auto built = OurElements();
   for (const std::string& name : kElements)
@@ -273,7 +279,7 @@ TEST_P(TypicalPipelines, PlayFourTimesInARow) {
   const test::ElementBus bus(pipeline.get());
   for (int cycle = 0; cycle < 4; ++cycle) {
     ASSERT_NE(gst_element_set_state(pipeline.get(), GST_STATE_PLAYING), GST_STATE_CHANGE_FAILURE);
-    // Every other time the pipeline is torn down on its way up.
+    // In every second cycle the pipeline is stopped before it has reached PLAYING.
     if (cycle % 2 == 0) {
       EXPECT_EQ(gst_element_get_state(pipeline.get(), nullptr, nullptr, test::kPatience_ns),
                 GST_STATE_CHANGE_SUCCESS);

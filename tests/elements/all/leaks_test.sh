@@ -1,14 +1,16 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# GStreamer's leaks tracer over typical pipelines: no object, buffer, event or caps outlives its pipeline.
+# Runs typical pipelines with GStreamer's leaks tracer. No object, buffer, event or caps may outlive
+# its pipeline.
 set -uo pipefail
 passed=0
 failed=0
 
-# alive LOG: the lines of objects that were left.
+# alive LOG: prints the lines of LOG about objects that were not freed.
 alive() { grep -o 'object-alive, type-name=.*' <<<"$1" | grep -v '%s'; }
 
-# run NAME PIPELINE...: counts whether the pipeline ends by itself and leaves no object behind.
+# run NAME PIPELINE...: runs the pipeline. Counts it as passed if it ends by itself and all objects
+# are freed.
 run() {
   local name=$1
   shift

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# The programs of docs/using-in-your-code.md build with what is installed, and print the same points.
+# Builds the programs of docs/using-in-your-code.md with the installed files. Both programs must
+# print the same points.
 # Usage: apps_test.sh SOURCE_ROOT BUILD_ROOT
 set -euo pipefail
 source=$1
@@ -16,7 +17,8 @@ pipeline="lidartestsrc num-buffers=16 model=os1-32 mode=512x10 ! lidarenc ! lida
 cat "$work/cpp"
 [ "$(grep -cE '^[0-9]{19}: \(32, 512\) points, the nearest at [0-9]+\.[0-9]{2} m$' "$work/cpp")" = 2 ]
 
-# Debian's packages belong to Debian's Python, which need not be the first in PATH.
+# Debian's packages of Python modules work only with Debian's Python, which may not be the first one
+# in PATH.
 for python in python3 /usr/bin/python3 none; do
   "$python" -c 'import numpy; from gi.overrides import _gi_gst' 2>/dev/null && break
 done
@@ -24,7 +26,8 @@ done
 "$python" "$source/tests/elements/apps/cloud_to_numpy.py" "$pipeline" >"$work/python"
 diff "$work/cpp" "$work/python"
 
-# The programs do not wait for a pipeline that cannot be made, or whose source fails.
+# If a pipeline cannot be made, or if its source fails, a program must end with an error and not
+# wait.
 fails() {
   local status=0
   timeout 180 "$@" >"$work/said" 2>&1 || status=$?

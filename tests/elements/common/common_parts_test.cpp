@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The parts of gst/common that several plugins share: seeks, certificates, covariances, histories.
+// Tests of the parts of gst/common that several plugins use: seeks, certificates, covariances, and
+// histories.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -22,7 +23,7 @@ namespace {
 
 constexpr auto kSecond = static_cast<gint64>(GST_SECOND);
 
-/// A segment of 10 s at position 3 s.
+/// Returns a segment of 10 s whose position is 3 s.
 GstSegment Played() {
   GstSegment segment;
   gst_segment_init(&segment, GST_FORMAT_TIME);
@@ -147,7 +148,7 @@ TEST(Covariances, CarryTheTrackingToRosAndBack) {
   EXPECT_EQ(NoVelocity(), CovarianceOf(GST_LIDAR_TRACKING_LOST));
 }
 
-/// Drops buffers of 3 bytes, and lengthens others by a byte.
+/// Drops buffers of 3 bytes, and replaces others by buffers that are one byte longer.
 GstPadProbeReturn ChangePackets(GstPad*, GstPadProbeInfo* info, gpointer) {
   return MapPackets(info, [](BufferPtr packet) {
     const gsize size = gst_buffer_get_size(packet.get());

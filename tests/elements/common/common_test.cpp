@@ -96,7 +96,7 @@ TEST(Metas, ThatLackAFieldAreNone) {
   each(GST_LIDAR_ECN_META_NAME, [](GstBuffer* buffer) {
     GstLidarEcn ecn{};
     GstClockTime arrival = 0;
-    // Of the fields, only the arrival time may be missing.
+    // The arrival time is the only field that may be missing.
     if (gst_lidar_buffer_get_ecn(buffer, &ecn, &arrival)) {
       EXPECT_EQ(ecn, GST_LIDAR_ECN_CE);
       EXPECT_EQ(arrival, GST_CLOCK_TIME_NONE);
@@ -174,7 +174,7 @@ TEST(CloudInfo, RoundTripsThroughCaps) {
 
 struct BadCaps {
   const char* caps;
-  const char* why;  // part of the reason
+  const char* why;  // part of the expected reason
 };
 class CloudCaps : public ::testing::TestWithParam<BadCaps> {};
 TEST_P(CloudCaps, AreRefusedWithTheRealReason) {
@@ -320,7 +320,7 @@ TEST(Clouds, AreRefusedWhereBufferAndCapsContradictEachOther) {
   const BufferPtr buffer(gst_buffer_new_allocate(nullptr, 64, nullptr));
   GstLidarCloud cloud;
   EXPECT_FALSE(gst_lidar_cloud_map(&cloud, &info, buffer.get(), GST_MAP_READ));
-  gst_lidar_cloud_unmap(&cloud);  // does nothing
+  gst_lidar_cloud_unmap(&cloud);  // must have no effect
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The events of gstlidar.h: their content, and which events of other programs are refused.
+// Tests of the events of gstlidar.h: their content, and which events of other programs are refused.
 #include <gtest/gtest.h>
 
 #include <utility>
@@ -90,7 +90,7 @@ TEST(Events, CarryWhatAReceiverHas) {
   }
 }
 
-/// An event of slices whose list has `count` numbers of `type`.
+/// Returns a slices-received event. Its list has `count` numbers of the type `type`.
 EventPtr SlicesEvent(guint count, GType type, bool has_receiver = true) {
   GstStructure* s = gst_structure_new_empty(GST_LIDAR_SLICES_RECEIVED_EVENT);
   if (has_receiver) gst_structure_set(s, "receiver", G_TYPE_UINT, 1U, nullptr);

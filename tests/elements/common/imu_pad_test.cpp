@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The pad of a source's inertial measurement unit: its events, times, queries and flushes.
+// Tests of the pad on which a source outputs the samples of an inertial measurement unit: its
+// events, times, queries and flushes.
 #include "gst/common/imu_pad.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +15,7 @@
 
 namespace {
 
-/// A source that pushes nothing by itself.
+/// A source that does not push anything by itself.
 struct ImuSource {
   GstBaseSrc parent;
 };
@@ -46,7 +47,7 @@ class ImuPads : public ::testing::Test {
     source_.reset(GST_ELEMENT(
         gst_object_ref_sink(g_object_new(imu_source_get_type(), "name", "source", nullptr))));
     GstPad* clouds = GST_BASE_SRC_PAD(source_.get());
-    // Starts no task: it would push clouds.
+    // Replaces the function that would start a task, because the task would push clouds.
     gst_pad_set_activatemode_function(
         clouds, [](GstPad*, GstObject*, GstPadMode, gboolean) -> gboolean { return TRUE; });
     gst_pad_set_active(clouds, TRUE);
@@ -60,7 +61,7 @@ class ImuPads : public ::testing::Test {
     pad_.reset();
     EXPECT_EQ(PadPtr(gst_element_get_static_pad(source_.get(), "imu")), nullptr);
   }
-  /// Links the new pad, and notes whether it already has a segment.
+  /// Links the new pad. Notes whether the pad already had a segment when it was added.
   static void OnPad(GstElement*, GstPad* pad, gpointer self) {
     auto* test = static_cast<ImuPads*>(self);
     test->had_segment_ = EventPtr(gst_pad_get_sticky_event(pad, GST_EVENT_SEGMENT, 0)) != nullptr;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The rows of property tables and of statistics, on a GObject made for it.
+// Tests of the tables of properties and statistics, with a GObject that is made for this test.
 #include "gst/common/properties.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include "gst/common/stats.h"
 
 namespace lidar::gst {
-// The namespace has a name because types at file scope have fields of its types.
+// The namespace needs a name, because types at file scope have members of its types.
 inline namespace properties_test {
 
 enum class Colour { kRed, kGreen = 7 };
@@ -62,7 +62,7 @@ struct TestThingClass {
 static GType test_thing_get_type();
 G_DEFINE_TYPE(TestThing, test_thing, G_TYPE_OBJECT)
 
-/// A bin that proxies the property `port` of its TestThing, with another default.
+/// A bin with the property `port` of its child TestThing, but with another default.
 struct TestBin {
   GObject parent;
   struct State {
@@ -83,7 +83,7 @@ namespace {
 StructurePtr Stats(GObject*) { return StructurePtr(gst_structure_new_empty("counts")); }
 guint Changes(GObject* o) {
   State& state = *reinterpret_cast<TestThing*>(o)->state;
-  const std::lock_guard lock(state.mutex);  // would hang if the caller held the lock
+  const std::lock_guard lock(state.mutex);  // would block for ever if the caller held the lock
   return static_cast<guint>(state.changes);
 }
 void Changed(GObject* o, GParamSpec*) { ++reinterpret_cast<TestThing*>(o)->state->changes; }
@@ -235,7 +235,7 @@ TEST_F(PropertyTable, ShowsTheRowsOfAChildOnItsBin) {
   auto* port = g_object_class_find_property(G_OBJECT_GET_CLASS(bin), "port");
   EXPECT_EQ(G_PARAM_SPEC_UINT(port)->default_value, 99U);
   EXPECT_EQ(G_PARAM_SPEC_UINT(port)->maximum, 65535U);
-  g_object_set(bin, "port", 7U, nullptr);  // no child yet
+  g_object_set(bin, "port", 7U, nullptr);  // there is no child yet
   reinterpret_cast<TestBin*>(bin)->state->thing = thing_;
   g_object_set(bin, "port", 8U, "own", "x", nullptr);
   EXPECT_EQ(Get<guint>("port"), 8U);
@@ -251,7 +251,8 @@ TEST(PropertyTableDeathTest, EndsTheProgramWhereARowIsAskedForThatIsNotThere) {
   EXPECT_DEATH(FindRow(kNestedRows, "wiat"), "no property row is called \"wiat\"");
 }
 
-/// Returns the number that a value of kind T has in statistics or, as a guint, in a property.
+/// Returns the number that a value of kind T becomes in statistics, or, if `type` is guint, in a
+/// property.
 template <class T>
 guint64 Shown(T value, GType type = Kind<T>::Type()) {
   GValue v = G_VALUE_INIT;

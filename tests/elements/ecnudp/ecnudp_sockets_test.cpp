@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Sockets that an application gives to ecnudpsink and ecnudpsrc.
+// Tests of sockets that an application gives to ecnudpsink and ecnudpsrc.
 #include <gtest/gtest.h>
 
 #include "gst/net/datagram.h"
@@ -12,7 +12,8 @@ namespace {
 using test::Harness;
 using test::SetPlaying;
 
-/// A socket of an application, at a free port if `address` is null.
+/// Returns a socket as an application would make it. It is bound to `address`, or to a free port if
+/// `address` is null.
 Object<GSocket> Bound(GSocketAddress* address = nullptr) {
   Object<GSocket> socket(
       g_socket_new(G_SOCKET_FAMILY_IPV4, G_SOCKET_TYPE_DATAGRAM, G_SOCKET_PROTOCOL_UDP, nullptr));
@@ -56,7 +57,8 @@ TEST(EcnUdpSockets, AGivenSocketStaysOpenWhereAsked) {
   EXPECT_TRUE(g_socket_is_closed(socket.get()));
 }
 
-/// The peer's port is closed when the application sends, so the kernel reports a refusal.
+/// When the application sends, the port of the peer is closed. The kernel reports this as an error
+/// of the socket.
 TEST(EcnUdpSockets, APeerThatDoesNotListenYetEndsNothing) {
   const auto socket = Bound();
   auto peer = Bound();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// ecnudpsink and ecnudpsrc, each alone.
+// Functions that make an ecnudpsink or an ecnudpsrc in a harness.
 #pragma once
 #include <gio/gio.h>
 #include <gtest/gtest.h>
@@ -48,7 +48,8 @@ inline std::string Text(GstBuffer* buffer) {
   return text;
 }
 
-/// Returns a sink that is not started: a harness starts its element at once.
+/// Returns a sink that is not started yet, because properties may have to be set before a harness
+/// starts it.
 inline GstElement* SinkElement() {
   GstElement* sink = gst_element_factory_make("ecnudpsink", nullptr);
   g_object_set(sink, "sync", FALSE, "async", FALSE, nullptr);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// ecnudpsink and ecnudpsrc over real loopback sockets.
+// Tests of ecnudpsink and ecnudpsrc with real sockets of the loopback interface.
 #include <gio/gio.h>
 #include <gst/net/gstnetaddressmeta.h>
 #include <gtest/gtest.h>
@@ -19,9 +19,9 @@
 #include "tests/support/ipv6.h"
 #include "tests/support/patience.h"
 
-static std::atomic<gint64> clock_ahead{0};  // [us]
+static std::atomic<gint64> clock_ahead{0};  // added to g_get_real_time() [us]
 
-/// Replaces GLib's function in this program and in its plugins.
+/// Replaces GLib's function in this program and in the plugins that it loads.
 extern "C" gint64 g_get_real_time() {
   timespec now{};
   clock_gettime(CLOCK_REALTIME, &now);
@@ -57,7 +57,8 @@ TEST_P(Loopback, EveryPacketArrivesWithItsOwnEcnCodepoint) {
     gst_lidar_buffer_set_ecn(buffer, static_cast<GstLidarEcn>(i), GST_CLOCK_TIME_NONE);
     gst_buffer_list_add(list, buffer);
   }
-  gst_buffer_list_add(list, Payload("packet 4"));  // without meta: the property applies
+  // This buffer has no meta, so the property applies.
+  gst_buffer_list_add(list, Payload("packet 4"));
   ASSERT_EQ(gst_pad_push_list(sink->srcpad, list), GST_FLOW_OK);
   for (guint i = 0; i < 5; ++i) {
     const BufferPtr got(gst_harness_pull(src.get()));
@@ -94,12 +95,12 @@ TEST(EcnUdp, BatchesLargerThanOneSystemCallArriveWholeAndInOrder) {
   }
 }
 
-/// A batch is under way at the stop, and the kernel has dropped datagrams.
+/// When the first run stops, the source is handling a batch, and the kernel has dropped datagrams.
 TEST(EcnUdp, ASecondRunHasNothingOfTheFirst) {
   const Harness src(gst_harness_new_with_padnames("ecnudpsrc", nullptr, "src"));
   g_object_set(src->element, "port", 0, "buffer-size", 4'096, nullptr);
   const auto drops = [&] { return Stat(src.get(), "dropped-by-kernel"); };
-  gst_element_set_state(src->element, GST_STATE_PAUSED);  // opens the socket, but does not read
+  gst_element_set_state(src->element, GST_STATE_PAUSED);  // opens the socket, but does not read yet
   Harness sink = NewSink("127.0.0.1", LocalPort(src.get()));
   for (int i = 0; i < 50; ++i) gst_harness_push(sink.get(), Payload(std::string(1'000, 'x')));
   SetPlaying(src.get());
@@ -133,11 +134,11 @@ TEST(EcnUdp, ASecondRunHasNothingOfTheFirst) {
   EXPECT_EQ(drops(), 0U);
 }
 
-/// Each datagram arrives or is counted as dropped, once.
+/// Each datagram either arrives or is counted as dropped, exactly once.
 TEST(EcnUdp, WhatArrivesAndWhatTheKernelDropsIsWhatWasSent) {
   const Harness src(gst_harness_new_with_padnames("ecnudpsrc", nullptr, "src"));
   g_object_set(src->element, "port", 0, "buffer-size", 4'096, nullptr);
-  gst_element_set_state(src->element, GST_STATE_PAUSED);  // opens the socket, but does not read
+  gst_element_set_state(src->element, GST_STATE_PAUSED);  // opens the socket, but does not read yet
   const Harness sink = NewSink("127.0.0.1", LocalPort(src.get()));
   guint64 sent = 0;
   const auto send = [&] {
@@ -148,7 +149,8 @@ TEST(EcnUdp, WhatArrivesAndWhatTheKernelDropsIsWhatWasSent) {
   const auto dropped = [&] { return Stat(src.get(), "dropped-by-kernel"); };
   while (sent < 50) send();
   SetPlaying(src.get());
-  // The kernel reports drops with the next datagram that it does not drop.
+  // The kernel reports dropped datagrams together with the next datagram that it delivers, so the
+  // test sends more.
   int looks = 0;
   ASSERT_TRUE(test::Eventually([&] {
     if (looks++ % 50 == 0) send();
@@ -207,7 +209,7 @@ TEST(EcnUdp, APauseOrAFlushEndsNothing) {
       }};
   for (const auto& interrupt : interruptions) {
     interrupt();
-    // Each datagram comes alone, while the source waits.
+    // Each datagram arrives alone, because the source waits for it.
     for (int i = 0; i < 3; ++i) {
       gst_harness_push(sink.get(), Payload(std::to_string(i)));
       const BufferPtr got(gst_harness_pull(src.get()));
@@ -295,7 +297,7 @@ TEST(EcnUdp, ReplyGoesToThePeerThatTheBufferNames) {
   EXPECT_FALSE(GetObject<GSocketAddress>(reply.get(), "peer-address"));
 }
 
-/// Returns the TOS byte of the next datagram on `fd`; -1 if the kernel does not give it.
+/// Returns the TOS byte of the next datagram on `fd`, or -1 if the kernel does not report it.
 int ReceiveTos(int fd) {
   char data[16];
   alignas(cmsghdr) char control[64];
@@ -324,7 +326,8 @@ TEST_P(Loopback, PacketsLeaveByTheInterfaceAndByNoOther) {
   EXPECT_EQ(Text(got.get()), "sent");
 }
 
-/// Returns a socket on loopback. An IPv6 socket is for both families, and bound to any address.
+/// Returns a socket on the loopback interface. An IPv6 socket is bound to any address and receives
+/// IPv4 datagrams, too.
 Object<GSocket> LoopbackSocket(GSocketFamily family = G_SOCKET_FAMILY_IPV4) {
   const Object<GInetAddress> address(family == G_SOCKET_FAMILY_IPV4
                                          ? g_inet_address_new_loopback(family)
@@ -362,7 +365,7 @@ TEST_P(EcnUdpSinkOn, KeepsTheDscpBesideTheEcnBits) {
 INSTANTIATE_TEST_SUITE_P(ASocket, EcnUdpSinkOn,
                          ::testing::Values(G_SOCKET_FAMILY_IPV4, G_SOCKET_FAMILY_IPV6));
 
-/// A socket for both address families sends to an IPv4 host through the IPv4 stack.
+/// An IPv6 socket sends datagrams to an IPv4 host through the IPv4 stack.
 TEST(EcnUdpSink, MarksWhatLeavesThroughTheIpv4StackOfAnIpv6Socket) {
   const Harness src = NewSource(), both = NewSource();
   GstElement* element = SinkElement();
@@ -461,7 +464,8 @@ TEST(EcnUdpSrc, APortInUseIsAnElementErrorThatSaysWhatToDo) {
   g_error_free(error);
   EXPECT_NE(test::MessageDetails(message.get()).find("is another program using the port?"),
             std::string::npos);
-  // If this machine lacks the address, the error does not ask about other programs.
+  // If this machine does not have the address, the error must not suggest that another program uses
+  // the port.
   g_object_set(second.get(), "address", "203.0.113.9", nullptr);
   EXPECT_EQ(gst_element_set_state(second.get(), GST_STATE_PAUSED), GST_STATE_CHANGE_FAILURE);
   const MessagePtr elsewhere = bus.Pop(GST_MESSAGE_ERROR);
@@ -528,7 +532,8 @@ TEST(EcnUdpSink, ASocketOfIpv6SendsToAGroupOfIpv4ByItsInterface) {
   EXPECT_EQ(Text(got.get()), "dual");
 }
 
-/// By default the kernel gives a socket the datagrams of all groups that programs have joined.
+/// By default, the kernel delivers to a socket the datagrams of all groups that any program on this
+/// machine has joined.
 TEST(EcnUdpSrc, TakesNothingOfAnotherGroupOnItsPort) {
   const Harness ours = ListenerOf("239.201.7.1", 0);
   if (gst_element_set_state(ours->element, GST_STATE_PLAYING) == GST_STATE_CHANGE_FAILURE)
@@ -543,7 +548,7 @@ TEST(EcnUdpSrc, TakesNothingOfAnotherGroupOnItsPort) {
   EXPECT_EQ(Text(got.get()), "ours");
 }
 
-/// A machine without multicast joins no group, with brackets or without.
+/// A machine without multicast cannot join a group. Then both forms of the address must fail.
 TEST(EcnUdpSrc, TakesAMulticastGroupInBrackets) {
   const auto joins = [](const std::string& group) {
     const Harness src(gst_harness_new_with_padnames("ecnudpsrc", nullptr, "src"));
@@ -557,7 +562,7 @@ TEST(EcnUdpSrc, TakesAMulticastGroupInBrackets) {
 
 struct Peer {
   const char* accepts;
-  const char* wants;  // caps that the source then sets; NULL for none
+  const char* wants;  // caps that the source then sets; null: none
 };
 class WithoutCaps : public ::testing::TestWithParam<Peer> {};
 TEST_P(WithoutCaps, TheSourceTakesWhatDownstreamWants) {
@@ -675,7 +680,7 @@ TEST(EcnUdp, WorksAgainAfterEveryStateCycle) {
   }
 }
 
-/// A batch of datagrams waits in the element while downstream takes the first one.
+/// While downstream handles the first datagram, two more wait in the element.
 TEST(EcnUdpSrc, AStopForgetsDatagramsThatWait) {
   Harness src(gst_harness_new_with_padnames("ecnudpsrc", nullptr, "src"));
   g_object_set(src->element, "port", 0, "address", "127.0.0.1", nullptr);
@@ -699,7 +704,7 @@ TEST(EcnUdpSrc, AStopForgetsDatagramsThatWait) {
   EXPECT_EQ(Text(BufferPtr(gst_harness_pull(src.get())).get()), "after");
 }
 
-/// Sends datagrams to a port of this machine as fast as it can, until it goes out of scope.
+/// Sends datagrams to a port of this machine as fast as possible, until the object is destroyed.
 class Flood {
  public:
   explicit Flood(guint port)

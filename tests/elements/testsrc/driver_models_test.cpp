@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Models whose clouds are those of their makers' ROS drivers.
+// Tests of the models whose clouds are like those of the makers' ROS drivers.
 #include <gst/base/gstpushsrc.h>
 #include <gtest/gtest.h>
 
@@ -26,7 +26,8 @@ class DriverModel : public ::testing::TestWithParam<const char*> {
       : firing_(*synth::FindFiring(GetParam())),
         h_(gst_harness_new_parse(
             (std::string("lidartestsrc num-buffers=2 scene=tunnel model=") + GetParam()).c_str())) {
-    // Keeps the caps of each cloud: the width changes, and the source may be ahead of the test.
+    // Stores the caps of each cloud, because each cloud has its own width, and the source may be
+    // ahead of the test.
     gst_pad_add_probe(
         h_->sinkpad, GST_PAD_PROBE_TYPE_BUFFER,
         [](GstPad* pad, GstPadProbeInfo*, gpointer self) {
@@ -58,13 +59,13 @@ class DriverModel : public ::testing::TestWithParam<const char*> {
     return info_.fields.Find("ring") != nullptr ? At<std::uint16_t>(point, "ring")
                                                 : At<std::uint8_t>(point, "line");
   }
-  /// Inverts Firing::RingOf().
+  /// Computes the inverse of Firing::RingOf().
   std::uint32_t LaserAt(std::size_t point) const {
     const std::uint32_t rings_of_a_bank = firing_.lasers / firing_.banks;
     const std::uint32_t ring = RingAt(point);
     return ring % rings_of_a_bank * firing_.banks + ring / rings_of_a_bank;
   }
-  /// Returns the time since the first column of the scan [s].
+  /// Returns the time of the point after the first column of the scan [s].
   double TimeAt(std::size_t point) const {
     if (info_.fields.Find("time") != nullptr) return static_cast<double>(At<float>(point, "time"));
     const auto begin =
@@ -85,7 +86,7 @@ class DriverModel : public ::testing::TestWithParam<const char*> {
 
   const Firing& firing_;
   Harness h_;
-  // caps of the clouds
+  // The caps of the clouds, in the order of the clouds.
   GAsyncQueue* const caps_ =
       g_async_queue_new_full([](gpointer caps) { gst_caps_unref(static_cast<GstCaps*>(caps)); });
   BufferPtr cloud_;
@@ -112,13 +113,14 @@ TEST_P(DriverModel, PublishesOneRowOfReturnsInTheDriversLayout) {
 TEST_P(DriverModel, FiresEveryLaserInTurnOverTheWholeScan) {
   Pull();
   std::set<std::uint32_t> rings;
-  // Seconds since 1970 in an F64 have steps of a quarter of a microsecond.
+  // A number of seconds since 1970 in an F64 has a resolution of a quarter of a microsecond.
   const double slack = 5e-7;
   const double column_s = 0.1 / firing_.columns;
   for (std::size_t i = 0; i < info_.width; ++i) {
     rings.insert(RingAt(i));
     ASSERT_LT(RingAt(i), firing_.lasers);
-    const double fires_s = 1e-9 * firing_.laser_delay_ns * LaserAt(i);  // after its column begins
+    // After the start of its column.
+    const double fires_s = 1e-9 * firing_.laser_delay_ns * LaserAt(i);
     const double columns = (TimeAt(i) - fires_s) / column_s;
     ASSERT_NEAR(columns, std::round(columns), 0.1) << i;
     if (i == 0) continue;
@@ -157,7 +159,7 @@ TEST_P(DriverModel, PointsLieWhereTheTableSays) {
 
 TEST_P(DriverModel, RangesAreRoundedToTheNearestUnit) {
   Pull();
-  synth::ScannerConfig config;  // as the source's defaults
+  synth::ScannerConfig config;  // has the defaults of the source
   config.sensor = synth::MakeSensor(firing_);
   config.scene = synth::SceneKind::kTunnel;
   config.speed_mps = 12;
@@ -178,7 +180,8 @@ TEST_P(DriverModel, RangesAreRoundedToTheNearestUnit) {
 INSTANTIATE_TEST_SUITE_P(All, DriverModel, ::testing::Values("vlp-16", "xt32", "at128", "mid-360"));
 
 TEST(DriverModels, ScansOfAMid360DoNotRepeat) {
-  // The sensor stands still, and has no noise.
+  // The sensor does not move and has no noise. Therefore points of two scans would be equal if the
+  // pattern of the beams repeated.
   Harness h(gst_harness_new_parse("lidartestsrc model=mid-360 speed=0 noise=0 num-buffers=2"));
   SetPlaying(h.get());
   std::set<std::array<float, 3>> first;
@@ -212,8 +215,8 @@ TEST(DriverModels, SlicesCoverTheScanOnce) {
   EXPECT_EQ(points[0], points[1]);
 }
 
-/// A stop may come between the making of a cloud and its caps. The base class would then ignore a
-/// buffer, and leak it.
+/// A stop may come after a cloud was made and before its caps are sent. In this case the base class
+/// would not free a buffer.
 TEST(DriverModels, AStopBeforeTheCapsOfACloudLeavesNoBuffer) {
   const ElementPtr source(gst_element_factory_make("lidartestsrc", nullptr));
   gst_util_set_object_arg(G_OBJECT(source.get()), "model", "vlp-16");

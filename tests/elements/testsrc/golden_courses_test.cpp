@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Golden files hold what lidartestsrc outputs and posts in scripted runs, except for
-// coordinates, whose last bits differ between machines.
+// Compares what lidartestsrc outputs and posts in scripted runs with golden files. Coordinates are
+// not compared, because their last bits differ between machines.
 #include <gtest/gtest.h>
 
 #include "tests/support/golden_course.h"

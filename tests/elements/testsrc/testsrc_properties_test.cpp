@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Each property of lidartestsrc has an effect.
+// Tests that each property of lidartestsrc has an effect.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -34,7 +34,7 @@ const SourceEffect kSourceEffects[] = {
     {"is-live", "true"},
 };
 
-/// Returns all that a source outputs and writes for a few slices.
+/// Returns everything that a source outputs and writes to files during a few slices.
 Lines LinesOf(const std::string& properties) {
   const std::string launch = "lidartestsrc num-buffers=4 " + properties;
   const gst::ElementPtr element(gst_parse_launch(launch.c_str(), nullptr));

@@ -97,7 +97,8 @@ TEST(LidarTestSrc, StampsAreTheSweepOfEachSlice) {
     EXPECT_EQ(slice.first_column, i % 4 * 128);
     EXPECT_EQ(GST_BUFFER_PTS(buffer.get()), i * 12'500'000);
     EXPECT_EQ(GST_BUFFER_DURATION(buffer.get()), 12'500'000U);
-    // Not live: repeatable times from 2024-01-01.
+    // If the source is not live, capture times begin at 2024-01-01, so that they are the same in
+    // each run.
     EXPECT_EQ(gst_lidar_buffer_get_capture_time(buffer.get()),
               1'704'067'200 * GST_SECOND + GST_BUFFER_PTS(buffer.get()));
   }
@@ -194,7 +195,7 @@ TEST(LidarTestSrc, ALiveSourceSaysItIsLateByOneSlice) {
   EXPECT_EQ(max, GST_CLOCK_TIME_NONE);
 }
 
-/// Wakes a waiter whose time has passed: the test clock does not wake it by itself.
+/// Wakes a thread that waits for a time that has passed. The test clock does not do this by itself.
 void ReleaseWaiter(const Harness& h) {
   ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h.get(), 1, 10));
   gst_clock_id_unref(
@@ -208,7 +209,7 @@ TEST(LidarTestSrc, ALiveSourceThatIsScansLateSkipsToThePresent) {
   ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h.get(), 1, 10));
   gst_harness_set_time(h.get(), test::kClockStart + 1'030 * GST_MSECOND);
   ReleaseWaiter(h);
-  EXPECT_EQ(SliceOf(Pull(h)).scan_id, 0U);  // the source was waiting with this slice
+  EXPECT_EQ(SliceOf(Pull(h)).scan_id, 0U);  // the source waited with this slice
   ReleaseWaiter(h);
   const BufferPtr next = Pull(h);
   EXPECT_EQ(SliceOf(next).scan_id, 10U);
@@ -221,7 +222,8 @@ TEST(LidarTestSrc, CaptureTimesAfterAPauseAreThoseOfTheDay) {
   const Harness h = Launch("is-live=true model=os1-32 mode=512x10");
   test::UseTestClock(h.get());
   SetPlaying(h.get());
-  // The test clock stands still during the pause, as a pipeline's running time does.
+  // The test clock does not advance during the pause, just as the running time of a pipeline does
+  // not.
   ASSERT_TRUE(test::AwaitClockWait(h.get(), test::kClockStart + 12'500'000));
   gst_element_set_state(h->element, GST_STATE_PAUSED);
   const auto resumed = static_cast<GstClockTime>(g_get_real_time()) * GST_USECOND;
@@ -306,7 +308,7 @@ TEST(LidarTestSrc, ChannelsAreFieldsBehindTheOthers) {
   }
 }
 
-/// Returns the error of a pipeline that does not start; null if it posts none.
+/// Returns the error of a pipeline that fails to start, or null if it posts no error.
 ErrorPtr ErrorOfStart(const char* launch) {
   const ElementPtr pipeline(gst_parse_launch(launch, nullptr));
   EXPECT_EQ(gst_element_set_state(pipeline.get(), GST_STATE_PAUSED), GST_STATE_CHANGE_FAILURE);
@@ -348,7 +350,8 @@ TEST(LidarTestSrc, RefusesCapsThatAreNotItsOwn) {
   gst_element_set_state(pipeline.get(), GST_STATE_NULL);
 }
 
-/// The caps have the size of the first cloud, which takes long to make.
+/// The caps contain the size of the first cloud. Making this cloud takes long, so the stop comes
+/// before the caps.
 TEST(LidarTestSrc, AStopBeforeItsFirstCapsIsNoError) {
   const ElementPtr pipeline(gst_parse_launch("lidartestsrc model=at128 ! fakesink", nullptr));
   g_object_set(pipeline.get(), "auto-flush-bus", FALSE, nullptr);
@@ -359,7 +362,7 @@ TEST(LidarTestSrc, AStopBeforeItsFirstCapsIsNoError) {
   EXPECT_FALSE(bus.Pop(GST_MESSAGE_ERROR));
 }
 
-/// What a source pushes from its pads, until its end.
+/// The buffers that a source pushes from its pads until EOS.
 struct Played {
   std::vector<BufferPtr> clouds;
   std::vector<BufferPtr> samples;
@@ -447,7 +450,7 @@ TEST(LidarTestSrc, ItsImuGivesTheSameSamplesAgain) {
     EXPECT_EQ(BytesOf(first.samples[i]), BytesOf(again.samples[i]));
 }
 
-/// lidartestsrc with its IMU, on a test clock. Keeps the buffers that leave the pad imu.
+/// A lidartestsrc with its IMU, on a test clock. Stores the buffers that the pad imu outputs.
 class LiveImu {
  public:
   LiveImu() {
@@ -498,7 +501,7 @@ TEST(LidarTestSrc, AnImuSkipsWithTheClouds) {
   ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h.get(), 1, 10));
   gst_harness_set_time(h.get(), test::kClockStart + 1'030 * GST_MSECOND);
   ReleaseWaiter(h);
-  Pull(h);  // the source was waiting with this slice
+  Pull(h);  // the source waited with this slice
   ReleaseWaiter(h);
   EXPECT_EQ(GST_BUFFER_PTS(Pull(h).get()), GST_SECOND);
   ASSERT_EQ(live.samples().size(), 2U);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Golden files hold what pointcloudview outputs and posts in scripted runs, except for
-// the colours of pixels, whose last bits differ between machines.
+// Compares what pointcloudview outputs and posts in scripted runs with golden files. The colours of
+// pixels are not compared, because their last bits differ between machines.
 #include <gtest/gtest.h>
 
 #include "src/base/byte_writer.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// pointcloudview: each property has an effect, and an element that was stopped or flushed draws as
-// a new one.
+// Tests of pointcloudview: each property has an effect, and an element that was stopped or flushed
+// draws like a new one.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -18,7 +18,7 @@ constexpr const char* kTwoBeams =
     "application/x-pointcloud2,width=6,height=2,point-step=16,"
     "fields=(string)\"x:F32:0,y:F32:4,z:F32:8,intensity:F32:12\",framerate=10/1";
 
-/// pointcloudview with small pictures, unless the properties have other sizes.
+/// A pointcloudview with small pictures, unless the properties set other sizes.
 class ViewRun {
  public:
   explicit ViewRun(const std::string& properties) {
@@ -43,7 +43,8 @@ class ViewRun {
     trace_->Stop();
     trace_->Take();
   }
-  /// Pushes a slice of two beams, with the pose of a sensor that drives along x if it `drives`.
+  /// Pushes a slice of two beams. If `drives` is true, it has the pose of a sensor that drives
+  /// along x.
   void Push(const GstLidarSlice& slice, bool drives = true, float ahead_m = 5) {
     std::vector<std::uint8_t> bytes;
     ByteWriter w(&bytes);
@@ -61,7 +62,7 @@ class ViewRun {
     EXPECT_EQ(gst_pad_push(h_->srcpad, cloud.release()), GST_FLOW_OK);
   }
   void PushScan(guint scan) { Push({scan, 0, 1, 0}); }
-  /// Makes downstream ask for pictures of another size.
+  /// Makes downstream request pictures of another size.
   void Resize(const char* caps) { gst_harness_set_sink_caps_str(h_.get(), caps); }
 
  private:
@@ -70,7 +71,7 @@ class ViewRun {
 };
 
 struct ViewEffect {
-  const char* others;  // properties that the effect needs
+  const char* others;  // properties without which there is no effect
   const char* property;
   const char* value;
 };

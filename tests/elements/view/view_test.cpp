@@ -36,7 +36,7 @@ BufferPtr Cloud(const std::vector<Point>& points) {
   return BufferPtr(gst_buffer_new_memdup(points.data(), points.size() * sizeof(Point)));
 }
 
-/// A view of 200 x 100 pixels.
+/// A fixture with a view of 200 x 100 pixels.
 class View : public ::testing::Test {
  protected:
   void Start(const std::string& properties, const CloudInfo& info, const char* format = "RGB") {
@@ -53,7 +53,7 @@ class View : public ::testing::Test {
     gst_lidar_buffer_set_slice(buffer.get(), &slice);
     return Push(std::move(buffer), slice.scan_id * 100 * GST_MSECOND);
   }
-  /// Pushes a scan or a slice of it, seen from `place` without a rotation.
+  /// Pushes a scan, or a slice of a scan. The sensor is at `place` and is not rotated.
   GstFlowReturn PushFrom(std::array<float, 3> place, const std::vector<Point>& points, guint scan,
                          guint index = 0, guint count = 1) {
     BufferPtr buffer = Cloud(points);
@@ -83,14 +83,15 @@ class View : public ::testing::Test {
     gst_video_frame_unmap(&frame);
     return rgb;
   }
-  /// Returns true for a bright pixel: a point. The background is dark, and rings are in between.
+  /// Returns true if the pixel is bright enough for a point. The background is dark, and the
+  /// brightness of range rings is in between.
   bool IsPoint(int x, int y) {
     const auto p = Pixel(x, y);
     return std::max({p[0], p[1], p[2]}) > 130;
   }
 
-  /// Returns true for a point or the map, which is dimmer than a point and brighter than the
-  /// background.
+  /// Returns true if the pixel shows a point or the map. The map is darker than a point and
+  /// brighter than the background.
   bool IsDrawn(int x, int y) {
     const auto p = Pixel(x, y);
     return std::max({p[0], p[1], p[2]}) > 60;
@@ -118,7 +119,7 @@ TEST_F(View, WhatIsHighHidesWhatIsLowFromAbove) {
   Push(Cloud({{25, 0, 10, 1}, {25, 0, 0, 1}}));
   Pull();
   const auto p = Pixel(150, 50);
-  EXPECT_GT(p[0], p[2]);  // the warm end of the colours
+  EXPECT_GT(p[0], p[2]);  // large values have warm colours
 }
 
 TEST_F(View, RingsLieBehindThePoints) {
@@ -149,7 +150,8 @@ TEST_F(View, TheRangeImageHasForwardInTheMiddleAndNothingWhereNothingReturned) {
   const Point none{0, 0, 0, 0};
   Push(Cloud({none, hit, none, none, none, none, hit, none}));
   Pull();
-  // Column 1 of the upper beam is destaggered by one to column 2, where the lower one is.
+  // Destaggering moves column 1 of the upper beam to column 2. The lower beam has its point in
+  // column 2, too.
   for (const int x : {25, 75, 175}) EXPECT_FALSE(IsPoint(x, 25) || IsPoint(x, 75)) << x;
   EXPECT_TRUE(IsPoint(125, 25));
   EXPECT_TRUE(IsPoint(125, 75));
@@ -255,20 +257,21 @@ TEST_F(View, SettingsMayChangeWhileItPlays) {
 TEST_F(View, TheMapKeepsWhatWasSeenWhereItWas) {
   Start("map=true view=top extent=100 point-size=1", Info(2));
   for (guint scan = 0; scan < 4; ++scan) {
-    // A wall at x = 25 of the map, seen from a sensor that drives to x = 10.
+    // The wall is at x = 25 of the map. The sensor drives to x = 10.
     const float driven = scan < 3 ? 0.0F : 10.0F;
-    const float wall = scan < 3 ? 25.0F : 500.0F;  // out of the last scan's sight
+    const float wall = scan < 3 ? 25.0F : 500.0F;  // the last scan does not see the wall
     PushFrom({driven, 0, 0}, {{wall, 12, 0, 1}, {wall, 12.5F, 0, 1}}, scan);
     Pull();
   }
-  // The middle of the driven way, x = 5, is the centre of the picture.
+  // The centre of the picture is at x = 5, in the middle of the driven path.
   EXPECT_TRUE(IsDrawn(140, 25));
   EXPECT_FALSE(IsDrawn(160, 25));
-  EXPECT_TRUE(IsDrawn(95, 50));  // the driven way
+  EXPECT_TRUE(IsDrawn(95, 50));  // the driven path
   EXPECT_FALSE(IsDrawn(80, 50));
 }
 
-/// A map keeps the values of its colours, so other colours need another map.
+/// The map stores, for each point, the value that determines its colour. Therefore a new color-max
+/// needs no new map, but a new color-by does.
 TEST_F(View, TheMapBeginsAnewWithOtherColoursOnly) {
   for (const auto& [property, value, stays] :
        {std::tuple("point-size", "2", true), std::tuple("color-max", "1", true),
@@ -291,7 +294,7 @@ TEST_F(View, TheColumnsOfASliceLieWhereTheSensorWasInItsSweep) {
   const Point aside{0.25F, 11.75F, 0, 1};
   PushFrom({0, 0, 0}, {missing, missing, missing, missing}, 0);
   Pull();
-  // The sensor drives 10 m per scan of four columns, so 2.5 m from one column to the next.
+  // The sensor drives 10 m per scan of four columns, which is 2.5 m from one column to the next.
   PushFrom({10, 0, 0}, {aside, aside, missing, missing}, 1, 0, 2);
   PushFrom({10, 0, 0}, {missing, missing, missing, missing}, 1, 1, 2);
   Pull();
@@ -328,7 +331,7 @@ TEST_F(View, InPerspectiveTheMapReaches300MetresToEachSide) {
       {10, 5, 5, 1}, {290, 60, 30, 1}, {310, 96, 32, 1}, {290, 290, 30, 1}, {290, -310, 30, 1}};
   Start("map=true eye-x=-10 eye-y=0 eye-z=0 target-x=20 target-y=0 target-z=0 field-of-view=120",
         Info(5));
-  // The sensor looks along y of the map.
+  // The sensor faces along the y axis of the map.
   const double half = std::sqrt(0.5);
   const GstLidarPose pose{{100, 50, 3}, {0, 0, half, half}, GST_LIDAR_TRACKING_OK, {}};
   for (guint scan = 0; scan < 4; ++scan) {
@@ -417,7 +420,7 @@ TEST(TrailMap, IsBoundedHoweverLongTheWay) {
     ASSERT_LE(map.points().size(), 1000U);
     ASSERT_LE(map.way().size(), TrailMap::kMostPlaces);
   }
-  EXPECT_LT(map.points().front().at[0], 100);  // the first points are still there
+  EXPECT_LT(map.points().front().at[0], 100);  // the first points are still in the map
   EXPECT_GT(map.points().back().at[0], 39'000);
   EXPECT_GT(map.way().back()[0], 39'990);
 }
@@ -481,7 +484,7 @@ TEST(TrailMap, FollowsTheVelocityWithinAScan) {
   const Rigid after_a_gap = map.PoseAfter(0.05);
   EXPECT_NEAR(after_a_gap.position[0], 4, 1e-5);
   EXPECT_NEAR(after_a_gap.heading(), 1.5708F, 1e-3);
-  // A quaternion and its negative are one rotation.
+  // A quaternion and its negative represent the same rotation.
   std::vector<float> headings;
   for (const double sign : {1.0, -1.0}) {
     map.MoveTo({{4, 0, 0}, {0, 0, 0, 1}, GST_LIDAR_TRACKING_OK, {}}, 30);
