@@ -205,7 +205,7 @@ class Bookkeeper {
   const double report_age_;
   std::map<std::tuple<std::uint32_t, std::uint32_t>, StoredSlice> stored_;
   std::map<std::uint64_t, Run> runs_;
-  // the runs, in the order in which their first slices were stored
+  // The runs, in the order in which their first slices were stored.
   std::vector<std::uint64_t> order_;
   RobotBooks books_;
 };

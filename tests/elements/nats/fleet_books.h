@@ -44,8 +44,8 @@ struct SessionReport {
   std::size_t life = 0;
   double receiving_from = std::numeric_limits<double>::infinity();
   double at = 0;
-  std::uint64_t received = 0;      // number of slices that rtplidardepay received
-  // slices that rtplidardepay counted: lost, damaged, without a config
+  std::uint64_t received = 0;  // number of slices that rtplidardepay received
+  // Number of slices that rtplidardepay counted as lost, as damaged, or as without a config.
   std::uint64_t lost = 0;
   std::uint64_t dropped = 0;       // slices that natssink dropped
   std::uint64_t waiting = 0;       // slices that wait in natssink

@@ -74,7 +74,7 @@ class FleetEndurance : public NatsTest {
   std::vector<std::unique_ptr<NatsPipeline>> poses_;  // of the robots with a worker
   std::vector<std::set<guint>> stored_scans_;         // of each robot, when the run has ended
   std::vector<std::unique_ptr<WorkerProcess>> workers_;
-  // by worker: the number of its lines that were printed
+  // For each worker, the number of its lines that were printed.
   std::map<pid_t, std::size_t> lines_told_;
   struct Down {
     double until;

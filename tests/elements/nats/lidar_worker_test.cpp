@@ -197,7 +197,7 @@ TEST_F(LidarWorker, WaitsForAServerThatTakesItsConnectionAndIsSilent) {
   auto worker = Worker();
   NatsPipeline other("natssrc name=n" + At() + "! fakesink name=see");
   other.Play();
-  // posted after the first attempt to connect failed
+  // When this warning is posted, the worker's first attempt to connect has also failed.
   EXPECT_NE(other.WaitForWarning("No NATS server answers"), "");
   server_.Thaw();
   const auto robot = Robot();
@@ -342,7 +342,7 @@ TEST_F(LidarWorker, KnowsWhereToReadFromThoughTheServerHadAPause) {
   worker::PipelineSettings settings;
   settings.connection.url = server_.url();
   settings.rewind = milliseconds(300);
-  // in this time no message is stored
+  // No message is stored in this time.
   std::this_thread::sleep_for(settings.rewind + milliseconds(100));
   const std::uint64_t before = LastOf("fleet");
   sender.Hold(false);
@@ -372,7 +372,7 @@ TEST_F(LidarWorker, BeginsItsMapWithAWholeScan) {
       "lidartestsrc model=os0-32 mode=512x10 speed=10 slices-per-scan=4 num-buffers=40 ! lidarenc "
       "effort=0" +
       kSee + "! natssink name=n sync=false subject=fleet.r1.lidar.front jetstream=fleet" + At());
-  sender.HoldFrom(36);  // the slice before the last scan's first
+  sender.HoldFrom(36);  // blocks the four slices of the last scan
   sender.Play();
   ASSERT_TRUE(Eventually([&] { return sender.stat("messages-acknowledged") >= 36; }));
   const std::uint64_t before = LastOf("fleet");

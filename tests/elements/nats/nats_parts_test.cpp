@@ -255,7 +255,7 @@ TEST_F(NatsParts, ACoderThatNobodyHereKnowsHasAFormat) {
   const auto back = StreamFormat::FromText(text);
   ASSERT_TRUE(back);
   EXPECT_TRUE(gst_caps_is_equal(back->caps(), format->caps()));
-  // the caps have no alignment=slice
+  // The caps have no alignment=slice.
   EXPECT_FALSE(FormatOf("application/x-voxels, levels=(uint)7", &why));
   EXPECT_FALSE(FormatOf("application/x-voxels, alignment=slice, levels=(uint)<1,2>", &why));
   EXPECT_EQ(why,
@@ -264,7 +264,7 @@ TEST_F(NatsParts, ACoderThatNobodyHereKnowsHasAFormat) {
 
 TEST_F(NatsParts, NestedTextIsRefusedAtOnce) {
   std::string text = std::string(kSliceCaps) + ", a=";
-  // each level doubles the time of GStreamer's parser
+  // Each level doubles the time that GStreamer's parser needs.
   while (text.size() < 569) text += "[[ a, b={";
   FormatBook book;
   book.Note("a.config.0000000000000000", text);
@@ -452,7 +452,7 @@ TEST_F(NatsParts, ABookOfPlacesKnowsWhatCameAndWhatIsMissing) {
 
 TEST_F(NatsParts, ABookOfPlacesIsBounded) {
   PlaceBook book;
-  // leaves a gap after each number
+  // Leaves a gap after each number.
   for (std::uint64_t n = 0; n < 100'000; n += 2) book.Note({1, n});
   EXPECT_TRUE(book.Note({1, 99'998}).again);
   EXPECT_FALSE(book.Note({1, 0}).again) << "forgotten";

@@ -129,7 +129,7 @@ TEST_F(NatsRuns, CapsComeAgainBeforeASmallBoxDropsThem) {
   const NatsClient client(server_.url());
   const auto all = client.Subscribe("r1.>");
   Feeder sink(At(kImuBox + " max-bytes=40000"));
-  // each is a little more than a quarter of max-bytes
+  // Each sample is a little larger than a quarter of max-bytes.
   for (int i = 0; i < 20; ++i) sink.Push(10'016);
   sink.End();
   natsConnection_PublishString(client.get(), "r1.end", "");

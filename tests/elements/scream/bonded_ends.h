@@ -113,8 +113,7 @@ inline void ExpectAllPassed(const BondReceiver& receiver, Pipeline& sender, guin
 }
 
 /// A router between the two links of a sender and one receiver. The router has a port for each
-/// link, to which the sender sends. It forwards the packets of each link from a different address,
-/// so that the receiver can distinguish the links.
+/// link, to which the sender sends. It forwards the packets of each link from a different address.
 class Router {
  public:
   static constexpr int kLinks = 2;

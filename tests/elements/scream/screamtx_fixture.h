@@ -184,7 +184,7 @@ class ScreamTx : public ::testing::Test {
 
   // Source address of the feedback; null: none.
   std::unique_ptr<GSocketAddress, gst::GObjectUnref> from;
-  guint32 receiver = 9;                                     // SSRC from which the reports come
+  guint32 receiver = 9;  // SSRC from which the reports come
   std::vector<int> ecns;
   std::vector<std::vector<std::uint8_t>> byes;
   guint16 next_seq_ = 0;

@@ -244,7 +244,7 @@ TEST(SliceService, WantsNothingRecodedForAViewerOfTheRecording) {
   const auto deliver = [&](std::uint32_t scan) {
     auto slice = std::make_shared<SliceMessage>();
     slice->id.scan = scan;
-    slice->blocks = {{scan, scan - 1}};  // the viewer does not have this block
+    slice->blocks = {{scan, scan - 1}};  // refers to a block that the viewer lacks
     viewer.service.Deliver(7, std::move(slice));
     return viewer.topic->wants_recoded();
   };
