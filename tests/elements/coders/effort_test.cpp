@@ -73,8 +73,9 @@ TEST(Effort, FallsByItselfWhereThereIsNone) {
   EXPECT_EQ(EffortHarness("effort=auto", 125'000, 1).Push(20), "range-adaptive");
 }
 
-// With the stopped clock, a scan lasts 16 us, and the coder takes 2 us per cloud. If a scan has one
-// cloud, this is an eighth of the available time. If it has eight clouds, it is all of it.
+// With the stopped clock, a scan lasts 16 us, and the coder takes 2 us per cloud. If a scan
+// consists of one cloud, the coder uses an eighth of the time. If a scan consists of eight clouds,
+// the coder uses all of the time.
 TEST(Effort, FallsWherePointsHaveTheTimeOfASliceOnly) {
   const test::StoppedClock clock;
   for (const guint slices : {1U, 8U}) {

@@ -7,7 +7,7 @@
 namespace lidar::test {
 
 /// While an object of this class exists, the clock advances only by a microsecond with each read.
-/// It is for tests without threads, because a wait with a time limit would end at once.
+/// The class is for tests without threads, because a wait with a time limit would end at once.
 class StoppedClock {
  public:
   StoppedClock();

@@ -200,7 +200,7 @@ TEST_F(McapErrors, APlayerSaysWhyItCannotPlay) {
 
 TEST_F(McapErrors, NestedCapsOfAStrangersChannelAreRefusedAtOnce) {
   std::string caps = "application/x-lidar-slice, alignment=(string)slice, a=";
-  // Each level doubles the time of GStreamer's parser.
+  // Each level doubles the time that GStreamer's parser needs.
   while (caps.size() < 569) caps += "[[ a, b={";
   mcap::test::FileMaker maker(mcap::WriterSettings{});
   mcap::Channel channel;

@@ -160,8 +160,8 @@ guint64 LastStored(const NatsClient& client) {
   return message ? static_cast<guint64>(natsMsg_GetTime(raw)) : 0;
 }
 
-/// If a time is early in its second, libnats can only ask for messages from the whole second on.
-/// Therefore natssrc itself drops the messages before that time.
+/// If a time is early in its second, libnats asks for all messages from the start of that second
+/// on. Therefore natssrc itself drops the messages before the time.
 TEST_F(NatsJetStream, AReplayEndsWhereAllMessagesAreBeforeItsTime) {
   const NatsClient client(server_.url());
   std::string why;
@@ -297,7 +297,8 @@ std::vector<Kept> TakeRest(const std::string& at) {
 TEST_F(NatsJetStream, ADurableConsumerBeginsAtTheTimeAndNumberThatItWasMadeWith) {
   PublishSlices(8, At(kBox));
   guint64 between = 0;
-  // Waits, because early in a second libnats would ask for messages from the whole second on.
+  // Waits, because early in a second libnats would ask for messages from the start of that second
+  // on.
   ASSERT_TRUE(Eventually([&] {
     between = static_cast<guint64>(g_get_real_time()) * 1000;
     return between % GST_SECOND > 100 * GST_MSECOND;
@@ -671,8 +672,8 @@ TEST_F(NatsJetStream, TellsALiveStreamsPastPieceByPiece) {
   EXPECT_EQ(last.from, sent.front().capture_time);
   EXPECT_EQ(last.to, sent.back().capture_time);
   EXPECT_EQ(last.damaged, 0U);
-  // The source asks the server for messages from a whole second on. Therefore the first slice may
-  // be up to a second earlier than `half`.
+  // The source may ask the server for messages from the start of a second on. Therefore the first
+  // slice may be up to a second earlier than `half`.
   const GstClockTime half = sent[150].capture_time;
   const auto later = AskForHistory(receiver, {half, 0, 100'000}, &last);
   ASSERT_FALSE(later.empty());

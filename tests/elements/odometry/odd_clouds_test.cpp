@@ -193,7 +193,7 @@ TEST_F(OddClouds, MayHaveSlicesWithoutEnd) {
     ASSERT_EQ(gst_harness_push(h_.get(), buffer), GST_FLOW_OK);
     gst_buffer_unref(gst_harness_pull(h_.get()));
   }
-  // The first four slices, because they have too many points for a scan.
+  // The first four slices count as one scan, because they have too many points.
   EXPECT_EQ(Count("scans"), 1U);
 }
 

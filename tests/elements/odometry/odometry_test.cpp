@@ -121,7 +121,7 @@ TEST_F(Odometry, PutsThePoseOnEveryScan) {
 }
 
 /// Returns the distance that the odometry measures over five scans at 20 m/s. The clouds pass
-/// `coder` before.
+/// through `coder` first.
 double DriveOf(const std::string& model, const char* deskew, const std::string& coder = "") {
   const Harness h(
       gst_harness_new_parse(("lidartestsrc speed=20 num-buffers=7 model=" + model + " ! " + coder +
@@ -153,8 +153,8 @@ TEST_F(Odometry, FollowsCodedCloudsByTheTimesThatComeBack) {
 }
 
 TEST_F(Odometry, BeginsAtItsInitialPose) {
-  // The initial pose is turned left by 90 degrees, so a drive along the sensor's x axis goes along
-  // y.
+  // In the initial pose the sensor is turned left by 90 degrees. Therefore a drive along the
+  // sensor's x axis moves along y.
   Start(1, 5, "initial-pose=\"100 20 3 0 0 0.70710678 0.70710678\"");
   const auto scans = PullAll(5);
   GstLidarPose first;

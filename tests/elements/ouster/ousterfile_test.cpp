@@ -354,7 +354,7 @@ TEST(OusterFile, GivesImuSamplesOnAPadOfTheirOwn) {
       EXPECT_NEAR(static_cast<double>(t - last), 10e6, 1e6);
     }
     last = t;
-    // The length is that of gravity plus the car's acceleration.
+    // The acceleration is that of gravity, plus or minus the accelerations of the car.
     EXPECT_NEAR(std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]), 9.81F, 4.0F);
   }
   std::remove(path.c_str());

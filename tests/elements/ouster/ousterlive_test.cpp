@@ -148,8 +148,8 @@ TEST(OusterLive, DamagedPacketsAreToldByTheirCrc) {
   const gint64 end = g_get_monotonic_time() + kPatience_us;
   while (sensor.counts().corrupted < 50 && g_get_monotonic_time() < end) g_usleep(1000);
   sensor.Fault({{"corrupt", 0.0}});
-  // On a busy machine the sensor may be in the middle of a scan when the fault ends. Therefore up to
-  // two damaged packets may be missing in the count.
+  // On a busy machine the sensor may be in the middle of a scan when the fault ends. Therefore up
+  // to two damaged packets may be missing in the count.
   ASSERT_TRUE(receiver.PullUntil([&](GstBuffer*) {
     return StatOf(receiver.source(), "packets-damaged") + 2 >= sensor.counts().corrupted;
   }));

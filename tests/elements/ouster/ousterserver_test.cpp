@@ -152,7 +152,8 @@ TEST(OusterQuestions, AreAsFewAsSeconds) {
   EXPECT_LE(server.requests(), of_a_question * (1 + seconds));
 }
 
-/// A sensor whose API tells, if the test wants it, that the sensor is switched off.
+/// A sensor whose API can report that the sensor is switched off. The test chooses what the API
+/// reports.
 class ChangingAnswers {
  public:
   explicit ChangingAnswers(const Receiver::Ports& ports) : sender_(ports.lidar) {

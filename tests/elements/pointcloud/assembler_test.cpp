@@ -389,7 +389,7 @@ TEST_F(Assembler, OpenScansLeaveWithTheirCapsBeforeNewOnes) {
   EXPECT_FALSE(IsCorrupted(Pull()));
 }
 
-/// The parameter changes the caps in a way after which slices cannot belong to the same scan.
+/// The parameter changes the caps in such a way that later slices cannot belong to the same scan.
 class AssemblerOfTwoLayouts : public Assembler,
                               public ::testing::WithParamInterface<void (*)(CloudInfo*)> {};
 TEST_P(AssemblerOfTwoLayouts, NeverMixesThemInAScan) {

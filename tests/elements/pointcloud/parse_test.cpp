@@ -112,7 +112,7 @@ TEST_F(Parse, ACloudOfSeveralBuffersHasTheTimeOfThatInWhichItBegins) {
     GST_BUFFER_PTS(piece.get()) = 5 * GST_SECOND + ms * GST_MSECOND;
     ASSERT_EQ(Push(std::move(piece)), GST_FLOW_OK);
   }
-  // Has no timestamp, so its clouds follow at the frame rate.
+  // This buffer has no timestamp, so its clouds follow at the frame rate.
   ASSERT_EQ(Push(Bytes(340)), GST_FLOW_OK);
   for (const guint ms : {0U, 70U, 140U, 240U})
     EXPECT_EQ(GST_BUFFER_PTS(Pull().get()), 5 * GST_SECOND + ms * GST_MSECOND);

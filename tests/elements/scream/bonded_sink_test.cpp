@@ -639,7 +639,7 @@ TEST_F(BondedSink, TellsOnceOfSwappedFeedbackAndInTheNextRunAgain) {
       Advance(20 * GST_MSECOND);
       Report(other, seq);
       if (OfLink("feedback-ignored", other) == ignored)
-        continue;  // the other link has sent a copy, so the report is about its own packet
+        continue;  // the other link has sent a copy, so the report counts for that link
       ++swapped;
       EXPECT_EQ(OfLink("feedback-ignored", other), ignored + 1);
       ASSERT_TRUE(Eventually([&] { return OfLink("feedback-accepted", own) == accepted + 1; }))

@@ -18,8 +18,8 @@
 static std::atomic<bool> loopback_has_carrier{true}, loopback_has_ipv4{true},
     loopback_has_ipv6{true};
 
-/// Replaces libc's function in this program and in the plugins that it loads. Changes the state of
-/// the loopback interface.
+/// Replaces libc's function in this program and in the plugins that it loads. Changes what the
+/// function reports about the loopback interface.
 extern "C" int getifaddrs(ifaddrs** first) noexcept {
   using Get = int (*)(ifaddrs**);
   static const auto next = reinterpret_cast<Get>(dlsym(RTLD_NEXT, "getifaddrs"));

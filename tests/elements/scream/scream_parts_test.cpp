@@ -83,8 +83,8 @@ INSTANTIATE_TEST_SUITE_P(
                       std::vector<std::uint8_t>{0x90, 96, 0, 1, 0, 0, 0, 0, 0, 0, 0, 7, 0, 0, 0xff,
                                                 0xff}));  // extensions past the end
 
-/// The pad has no peer that answers a latency query. In this case the gate treats the stream as
-/// live.
+/// The pad has no peer that answers a latency query. Without an answer, the gate treats the stream
+/// as live.
 TEST(KeyGate, CountsEachPacketThatItDropsAndPassesAllOnceItIsOpen) {
   const auto gate = std::make_shared<KeyGate>();
   const PadPtr pad(GST_PAD(gst_object_ref_sink(gst_pad_new("sink", GST_PAD_SINK))));

@@ -369,8 +369,8 @@ TEST_F(ScreamAux, TellsTheEncoderItsTargetAndHasTheSendersProperties) {
   EXPECT_TRUE(told);
 }
 
-/// The sender and the receiver are GStreamer's own rtpbins. screamaux is either linked before the
-/// sender's rtpbin, or inside it by the signal request-aux-sender.
+/// The sender and the receiver are GStreamer's own rtpbins. screamaux is linked before the sender's
+/// rtpbin, or put into that rtpbin by the signal request-aux-sender.
 class ScreamAuxWithRtpbin : public ::testing::TestWithParam<bool> {};
 TEST_P(ScreamAuxWithRtpbin, TheReceiversReportsMoveTheTarget) {
   const bool inside = GetParam();

@@ -276,7 +276,7 @@ TEST(ScreamBins, SeveralStreamsShareOnePath) {
 }
 
 TEST(ScreamBins, AStreamThatNoElementTakesIsAnErrorThatNamesTheDepayloader) {
-  // Lidardec is linked when a suitable pad is added.
+  // The element lidardec is linked when screamsrc adds a suitable pad.
   Pipeline receiver("screamsrc name=in port=0 ! lidardec ! fakesink");
   receiver.Play();
   Pipeline sender(kAudio + Sink(PortOf(receiver.Get("in").get())));

@@ -414,7 +414,8 @@ TEST_F(ScreamRx, MakesSoManyPadsAtMostAndForgetsThemWhenItStops) {
     Rtp camera;
     camera.payload_type = 97;
     camera.size = 10;
-    // With a marker bit, 72 looks like RTCP, so it is not used from pt-map.
+    // With a marker bit, a packet of type 72 looks like RTCP. Therefore pt-map may not have this
+    // type.
     camera.payload_type = 72;
     Push(camera);
     camera.payload_type = 97;

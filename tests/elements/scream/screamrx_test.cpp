@@ -315,7 +315,7 @@ TEST_F(ScreamRx, DropsARecordingThatIsOlderThanAskedFor) {
       ASSERT_EQ(Push(r), GST_FLOW_OK);
     }
     ++r.seq;
-    // It has no capture time, so it counts as old as the slice before it.
+    // A slice without a capture time gets the age of the slice before it.
     r.payload = WholeSlice();
     ASSERT_EQ(Push(r), GST_FLOW_OK);
     EXPECT_EQ(Passed(), asked ? 2U : 5U);
@@ -325,8 +325,8 @@ TEST_F(ScreamRx, DropsARecordingThatIsOlderThanAskedFor) {
   }
 }
 
-/// A slice without a capture time counts as old as the slice before it. A new run must forget the
-/// slices of the run before.
+/// A slice without a capture time gets the age of the slice before it. A new run must not use the
+/// age of a slice of the run before.
 TEST_F(ScreamRx, JudgesTheAgeOfSlicesAnewInEachRun) {
   g_object_set(element, "max-age", guint64{2 * GST_SECOND}, nullptr);
   Start();
@@ -391,7 +391,7 @@ TEST_F(ScreamRx, GoesOnWithThePeerWhereSomebodyElseSendsARecordingOfItsSsrc) {
   Rtp recorded = r;
   recorded.payload = WholeSlice(lidar::rtp::ToNtp(now - 3600 * GST_SECOND));
   ASSERT_EQ(Push(recorded, GST_LIDAR_ECN_ECT1, "10.0.0.9"), GST_FLOW_OK);
-  // It has no capture time, so it counts as old as the slice before it.
+  // A slice without a capture time gets the age of the slice before it.
   r.payload = WholeSlice();
   ASSERT_EQ(Push(r, GST_LIDAR_ECN_ECT1, "10.0.0.1"), GST_FLOW_OK);
   EXPECT_EQ(Passed(), 2U);

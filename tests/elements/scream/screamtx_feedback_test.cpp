@@ -279,7 +279,7 @@ TEST_F(ScreamTxFates, OfMoreRangesThanAReceiptHoldsAreToldFromTheFirstOn) {
 TEST_F(ScreamTx, TakesNoReceiptsFromReportsThatNameNoReceiver) {
   Start(kLidarCaps);
   // Transport-wide feedback does not name a receiver, and packets that it reports may still be
-  // dropped afterwards. Therefore it must not cause receipts.
+  // dropped afterwards. Therefore such feedback must not cause receipts.
   for (const guint32 ssrc : {0U, 9U}) {
     receiver = ssrc;
     const std::size_t before = acknowledged_;

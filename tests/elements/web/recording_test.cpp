@@ -462,8 +462,7 @@ std::vector<std::uint64_t> RestOf(web::Archive* archive,
   return times;
 }
 
-/// Expects that reading from each position of the archive gives all later slices, each of them
-/// once.
+/// Expects that reading from each position of the archive returns every later slice exactly once.
 void ExpectPiecesToFit(web::Archive* archive, guint slices) {
   std::string why;
   const auto times = archive->Look(&why);
@@ -598,8 +597,8 @@ TEST_F(Histories, WhoseServerIsGoneSaySo) {
   viewer.Draw();
 }
 
-/// If the old subscription were still read for, a viewer could fill the memory with requests, each
-/// for a new subscription.
+/// If histories were still read for a subscription that was replaced, a viewer could fill the
+/// memory with requests, each for a new subscription.
 TEST_F(Histories, AreNotReadForASubscriptionThatAnotherReplaced) {
   Push(40);
   Viewer viewer(&edge_.sink);
