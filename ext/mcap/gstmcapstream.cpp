@@ -65,8 +65,8 @@ static gboolean SetCaps(GstBaseSink* base, GstCaps* caps) {
     return FALSE;
   }
   state.refused.Reset();
-  // Refused caps leave the writer as it is, because GstBaseSink does not call SetCaps() again when
-  // the earlier caps return.
+  // The writer is replaced only here, after all checks. If the caps are refused, the writer of the
+  // earlier caps stays: buffers with those caps may follow without another call of SetCaps().
   state.writer = std::move(writer);
   if (state.topic.empty()) {
     const std::string usual(TopicOf(state.writer->type()));

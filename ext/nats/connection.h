@@ -29,8 +29,8 @@ struct ConnectionState {
   bool refused() const { return closed && !unanswered; }
 
   bool closed = false;  // libnats does not connect again by itself
-  // True if libnats gave up the first connect although no server refused it. A server accepted the
-  // TCP connection and then stayed silent.
+  // True if libnats gave up the first connect because a server accepted the TCP connection but
+  // never answered.
   bool unanswered = false;
   unsigned connections = 0;  // number of connects so far
   unsigned disconnections = 0;

@@ -62,8 +62,8 @@ bool IsEncoder(GstElement* element) {
   return klass != nullptr && std::string_view(klass).find("Encoder") != std::string_view::npos;
 }
 
-/// Returns the pad of the element that feeds `pad`, which may be inside or outside of a bin, or
-/// null if `pad` is not linked.
+/// Returns the source pad of the element that feeds `pad`, also if that element is inside of a bin
+/// or outside of the bin of `pad`. Returns null if `pad` is not linked.
 PadPtr RealPeer(GstPad* pad) {
   PadPtr peer(gst_pad_get_peer(pad));
   while (peer && GST_IS_PROXY_PAD(peer.get())) {

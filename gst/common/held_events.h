@@ -34,7 +34,7 @@ class HeldEvents {
   }
 
   /// Pushes the caps and then the held events. If downstream refuses the caps, GStreamer sends them
-  /// again before the next buffer. Then the push of this buffer returns the error.
+  /// again before the next buffer, and pushing that buffer returns the error.
   void PushCapsTo(GstPad* pad, GstCaps* caps) {
     gst_pad_push_event(pad, gst_event_new_caps(caps));
     PushTo(pad);

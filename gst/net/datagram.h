@@ -42,9 +42,10 @@ DatagramInfo ReadInfo(msghdr* received);
 struct SendControl {
   alignas(cmsghdr) char bytes[CMSG_SPACE(sizeof(int)) + CMSG_SPACE(sizeof(in6_pktinfo))] = {};
 };
-/// Sets the control messages of `message`, whose destination is `to`. The kernel then sends it with
-/// `tos`, through the interface with the index `interface` or, if that is 0, by the routes. Needs
-/// no privileges. `control` must live until the message is sent.
+/// Sets the control messages of `message`, which is sent to the address `to`. The kernel then sends
+/// the message with the IP header field `tos`. If `interface` is an index of an interface, the
+/// message leaves by this interface; if it is 0, the routing table decides. Needs no privileges.
+/// `control` must live until the message is sent.
 void SetControl(std::uint8_t tos, const NativeAddress& to, unsigned interface, SendControl* control,
                 msghdr* message);
 

@@ -8,7 +8,7 @@ namespace lidar::gst {
 /// Returns a colour from cold (0) to warm (1). For other values, returns the colour of the nearer
 /// end.
 Color Spectrum(float t);
-/// Returns a colour from slate (0) to warm white (1), for brightness.
+/// Returns the colour of the brightness `t`, from slate (0) to warm white (1).
 Color Glow(float t);
 
 /// Mixes `a` and `b`. `part` is the share of `b`.

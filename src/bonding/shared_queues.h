@@ -62,8 +62,9 @@ class SharedQueues {
   };
   struct Pair {
     Regression spacing;  // of the first link's arrivals, by what the second link sent
-    // The mean difference of the two queues, and the mean of the longer queue, when both links sent
-    // packets at the same time. Only pairs_[a][b] with a < b has these means.
+    // For a pair of links, from packets that both links sent at the same time: the mean difference
+    // between the queue delays of the two links, and the mean of the longer delay. Only
+    // pairs_[a][b] with a < b has these means.
     double apart_ms = 0, longer_ms = 0;
     bool shared = false;
   };

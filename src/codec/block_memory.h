@@ -53,14 +53,14 @@ struct BlockMemory {
 /// A memory is constant, because encoders, decoders and stores share it.
 using BlockMemoryPtr = std::shared_ptr<const BlockMemory>;
 
-/// The memories before and after a block.
+/// The memory that a block is coded with, and the memory that it leaves for later blocks.
 struct BlockLink {
   BlockMemoryPtr reference;           // memory that the block is coded with; null: none
   std::shared_ptr<BlockMemory> left;  // memory after the block; null: no block can refer to it
 };
 
-/// Returns the memory after `image`, whose ranges are the decoded ones. The memory continues
-/// `before`, the memory before `image`. If `before` is null, the memory and its model begin anew.
+/// Returns the memory for blocks after `image`. `image` must have the decoded ranges. `before` is
+/// the memory that `image` was coded with; if it is null, the new memory and its model begin anew.
 std::shared_ptr<BlockMemory> Remember(const RangeImage& image, const RangeGrid& grid,
                                       const BlockMemory* before);
 

@@ -109,8 +109,8 @@ std::string MakeGapTrace(const GapTraceConfig& config) {
     AppendLine(t, config.rate, &text);
     AppendLine(t + config.every - config.gap, config.in_gaps, &text);
   }
-  // The last line of a repeating trace lasts as long as the line before it. The two lines are half
-  // of the last gap each.
+  // The last line of a repeating trace lasts as long as the line before it. So two lines describe
+  // the last gap, and each of them lasts half of the gap.
   AppendLine(t - config.gap / 2, config.in_gaps, &text);
   return text;
 }

@@ -14,8 +14,8 @@
 namespace lidar::rate {
 
 struct ControllerParameters {
-  /// `limits.coarsest_step_m` comes from max-error (see ErrorBound), so the error bound holds at
-  /// any target.
+  /// The limits of the settings. `coarsest_step_m` is the coarsest step within max-error (see
+  /// ErrorBound), so max-error holds at any target bitrate.
   SettingLimits limits;
   /// The controller lowers the intensity bits to this number before it skips scans or thins them.
   unsigned min_intensity_bits = 4;

@@ -38,7 +38,8 @@ struct QueuedPacket {
   DataSize size;
   bool marker = false;              ///< last packet of an access unit
   std::uint32_t rtp_timestamp = 0;  ///< the same for all packets of an access unit
-  /// The same for all access units that are useful only together, such as the slices of a scan.
+  /// The number of a group of access units that are useful only together, such as the slices of a
+  /// scan.
   std::optional<std::uint32_t> group = std::nullopt;
 };
 

@@ -24,7 +24,7 @@ struct Scenario {
   bool beside_draft = false;                  ///< the other flows run the draft without extensions
 };
 
-/// Returns all scenarios, in which the sender has these parameters.
+/// Returns all scenarios. The sender of each has these parameters.
 std::vector<Scenario> Scenarios(const Parameters& parameters);
 /// Returns scenarios with policers, silent receivers and clock changes.
 std::vector<Scenario> EventScenarios(const Parameters& parameters);
@@ -36,7 +36,7 @@ std::optional<Scenario> FindScenario(const std::string& name, const Parameters& 
 struct DropMetrics {
   double peak_queue_ms = 0;
   double recovered_s = 0;  ///< from the drop until the queue stays below 10 ms for 0.2 s
-  /// From the drop until the rate sent (over 50 ms) is below the new capacity.
+  /// The time from the drop until the sent rate, measured over 50 ms, is below the new capacity.
   double below_rate_s = 0;
 };
 

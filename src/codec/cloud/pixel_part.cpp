@@ -29,7 +29,7 @@ class Rounder {
  public:
   explicit Rounder(std::int32_t width) : half_(width / 2), per_width_(1.0 / width) {}
   std::int32_t Of(std::int32_t number) const {
-    // Without the 0.5, an exact quotient could round to just below an integer and be cut off there.
+    // The 0.5 is added because an exact quotient may round to just below an integer.
     const auto size = static_cast<std::int32_t>((std::abs(number) + half_ + 0.5) * per_width_);
     return number < 0 ? -size : size;
   }

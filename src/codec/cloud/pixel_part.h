@@ -34,7 +34,7 @@ template <class Coder>
 bool CodeResiduals(const RangeImage& image, const ResidualSettings& settings,
                    std::vector<std::int32_t>* residuals, Coder* coder);
 
-/// A further return of a pixel. Its range is a bin of the image's grid.
+/// A return of a pixel that already has a first return. `bin` is its range in the image's grid.
 struct ExtraBin {
   std::uint32_t pixel = 0;
   std::int32_t bin = 0;  // bin minus the bin of the first return

@@ -40,8 +40,8 @@ struct AckSummary {
   /// The sending times of packets whose CE mark is in this report, although an earlier report
   /// already acknowledged them.
   std::vector<Time> late_ce;
-  /// The draft's bytes_newly_acked: the bytes up to the new highest acknowledged number of each
-  /// SSRC, including lost packets.
+  /// The draft's bytes_newly_acked: for each SSRC, the bytes of all packets from the last highest
+  /// acknowledged number to the new one. Lost packets count, too.
   DataSize bytes_newly_acked;
   DataSize bytes_newly_acked_ce;
   /// The round trip of the newest acknowledged packet. If the receiver reports how long it held the

@@ -63,7 +63,7 @@ class CheckedCodec {
   unsigned errors_ = 0;
 };
 
-/// Returns true if no error in the error check `s` exceeds the bound.
+/// Returns the field `holds` of the message lidar-error-check: true if the bound held.
 inline bool Holds(const GstStructure* s) {
   gboolean holds = FALSE;
   EXPECT_TRUE(gst_structure_get_boolean(s, "holds", &holds));

@@ -57,8 +57,8 @@ TEST(EcnUdpSockets, AGivenSocketStaysOpenWhereAsked) {
   EXPECT_TRUE(g_socket_is_closed(socket.get()));
 }
 
-/// When the application sends, the port of the peer is closed. The kernel reports this as an error
-/// of the socket.
+/// The application sends to a port that is still closed. The kernel reports this as an error of the
+/// socket.
 TEST(EcnUdpSockets, APeerThatDoesNotListenYetEndsNothing) {
   const auto socket = Bound();
   auto peer = Bound();

@@ -54,8 +54,8 @@ class Bookkeeper {
     return life;
   }
 
-  /// Assigns reports to runs. In each life of the edge, the first run gets the report of the first
-  /// session that received something, the second run that of the second, and so on.
+  /// Assigns reports to runs. A life is the time from a start of the edge to its end. In each life,
+  /// the n-th run gets the report of the n-th session that received something.
   void MatchReports(const std::vector<SessionReport>& sessions) {
     std::map<std::size_t, std::vector<SessionReport>> of_life;
     for (const SessionReport& session : sessions)

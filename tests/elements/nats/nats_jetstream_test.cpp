@@ -95,8 +95,8 @@ std::vector<Kept> AskForHistory(const NatsPipeline& receiver, gst::HistoryQuesti
   return out;
 }
 
-/// Blocks the buffers of `receiver` until the server sends messages again, then unblocks them.
-/// Returns true if `receiver` then acknowledges all messages.
+/// Blocks the buffers of `receiver` until the server sends unacknowledged messages a second time,
+/// then unblocks the buffers. Returns true if `receiver` then acknowledges all messages.
 bool TakesAllAfterItWasSentAgain(const DurableConsumer& consumer, NatsPipeline* receiver) {
   receiver->Hold(true);
   receiver->Play();

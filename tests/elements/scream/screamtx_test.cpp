@@ -150,7 +150,7 @@ TEST_F(ScreamTx, StartsAfreshAfterEveryStateCycle) {
   const std::vector<std::uint8_t> malformed{0x8b, 205, 0, 1, 0, 0, 0, 1};
   ASSERT_EQ(gst_harness_push(rtcp.get(), FromBytes(malformed)), GST_FLOW_OK);
   rtcp::CongestionFeedback report;
-  // This packet was never sent.
+  // Neither of the two reported packets was ever sent.
   report.blocks.push_back({0x1234, 30000, {{true, Ecn::kCe, Duration{0}}}});
   report.blocks.push_back({0x9999, 0, {{true, Ecn::kCe, Duration{0}}}});
   for (const bool ours : {true, false}) {

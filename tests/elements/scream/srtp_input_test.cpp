@@ -396,8 +396,8 @@ TEST_F(SrtpIn, RefusesARecordingOfTheKeyBefore) {
 }
 
 TEST_F(SrtpIn, IsNotStoppedWhileItMayDecode) {
-  // When the bin stops, it stops only its socket. If srtpdec stopped as well, it would warn of a
-  // packet that it decodes meanwhile.
+  // The bin stops only its socket. If it also stopped srtpdec, srtpdec would warn of a packet that
+  // it decodes at this moment.
   Protector sender(Key(5));
   const BufferPtr first = sender.Protect(1);
   EXPECT_TRUE(Passes(first));

@@ -195,7 +195,8 @@ TEST(LidarTestSrc, ALiveSourceSaysItIsLateByOneSlice) {
   EXPECT_EQ(max, GST_CLOCK_TIME_NONE);
 }
 
-/// Wakes a thread that waits for a time that has passed. The test clock does not do this by itself.
+/// Wakes the thread that waits for the clock, although its time has already passed. The test clock
+/// does not do this by itself.
 void ReleaseWaiter(const Harness& h) {
   ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h.get(), 1, 10));
   gst_clock_id_unref(
