@@ -280,6 +280,27 @@ TEST_F(Batcher, FrameIdsFarAheadAreARestart) {
   EXPECT_EQ(slices.back().index, 7U);
 }
 
+TEST_F(Batcher, BehindAFlushThePacketsMayBeOfAnyScan) {
+  std::string error;
+  ScanBatcher batcher(metadata_, *PointWriter::Create(metadata_, {}, &error), {8, 4});
+  Packets ahead(packets_.begin(), packets_.begin() + 2 * kPacketsPerScan);
+  for (std::size_t i = 0; i < ahead.size(); ++i) {
+    if (i == kPacketsPerScan) batcher.Flush();
+    if (i >= kPacketsPerScan) ahead[i][3] ^= 0x40;
+    batcher.Push(*LidarPacket::Parse({ahead[i].data(), ahead[i].size()}, metadata_.format));
+  }
+  EXPECT_EQ(batcher.stats().stray_packets, 0U);
+  EXPECT_EQ(batcher.stats().lost_packets, 0U);
+  EXPECT_EQ(batcher.stats().restarts, 0U);
+  std::vector<Slice> slices;
+  while (auto slice = batcher.Pop()) slices.push_back(*std::move(slice));
+  ASSERT_EQ(slices.size(), 16U);
+  for (std::uint32_t i = 0; i < 16; ++i) {
+    EXPECT_EQ(slices[i].scan_id, i / 8);
+    EXPECT_EQ(slices[i].after_gap, i == 8) << i;
+  }
+}
+
 TEST_F(Batcher, FrameIdsWrapAround) {
   Packets wrapping = packets_;
   for (std::size_t i = 0; i < wrapping.size(); ++i) {

@@ -60,6 +60,22 @@ TEST_F(CaptureIndexTest, KnowsTheDurationOnceItReadAll) {
   EXPECT_EQ(index.duration(), milliseconds(kDatagrams - 1));
 }
 
+TEST_F(CaptureIndexTest, EndsWithItsLatestDatagramAlsoIfThatIsNotTheLast) {
+  Write(kDatagrams - 2);
+  CaptureIndex index(OpenFile());
+  EXPECT_TRUE(index.ReadUntil(Duration::max(), Always));
+  EXPECT_EQ(index.duration(), milliseconds(kDatagrams - 1));
+}
+
+TEST_F(CaptureIndexTest, BeginsWithTheFirstDatagramOfTheFileAlsoIfTheNextIsEarlier) {
+  Write(0);
+  CaptureIndex index(OpenFile());
+  EXPECT_TRUE(index.ReadUntil(milliseconds(0), Always));
+  EXPECT_EQ(index.first(), kStart + milliseconds(1));
+  EXPECT_TRUE(index.ReadUntil(milliseconds(1), Always));
+  EXPECT_EQ(index.duration(), milliseconds(1));
+}
+
 TEST_F(CaptureIndexTest, ReadsNoFurtherThanItWasAsked) {
   Write();
   CaptureIndex index(OpenFile());

@@ -267,6 +267,22 @@ TEST_P(Fragments, WithoutEndHoldNoMoreThanSomeMemory) {
   }
 }
 
+TEST_P(Fragments, OfTheOldestDatagramMakeRoomForThoseOfA33rd) {
+  const Bytes payload = Payload(2000);
+  UdpExtractor extractor;
+  const auto extract = [&](std::uint16_t id, std::size_t fragment) {
+    return extractor.Extract(LinkType::kRaw,
+                             View(Cut(Udp(payload), 1480, {0, false, id})[fragment]));
+  };
+  for (std::uint16_t id = 0; id < 33; ++id) EXPECT_FALSE(extract(id, 0));
+  for (std::uint16_t id = 1; id < 33; ++id) {
+    const auto datagram = extract(id, 1);
+    ASSERT_TRUE(datagram) << id;
+    EXPECT_EQ(datagram->payload, payload) << id;
+  }
+  EXPECT_FALSE(extract(0, 1)) << "its first fragment is forgotten";
+}
+
 TEST_P(Fragments, BehindTheEndDiscardTheirDatagram) {
   const auto longer = Cut(Udp(Payload(4000)), 1480);
   const auto shorter = Cut(Udp(Payload(1592)), 1480);

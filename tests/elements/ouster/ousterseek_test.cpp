@@ -60,12 +60,13 @@ std::vector<Played> PlayOn(const Harness& h) {
 
 struct Range {
   gint64 start = 0;
-  gint64 stop = -1;
+  gint64 stop = -1;  // -1: none
   GstSeekType start_type = GST_SEEK_TYPE_SET;
+  GstSeekType stop_type = GST_SEEK_TYPE_SET;
 };
 
 bool Seek(const Harness& h, const Range& range, gdouble rate = 1) {
-  const GstSeekType stop_type = range.stop < 0 ? GST_SEEK_TYPE_NONE : GST_SEEK_TYPE_SET;
+  const GstSeekType stop_type = range.stop == -1 ? GST_SEEK_TYPE_NONE : range.stop_type;
   return gst_element_seek(h->element, rate, GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH, range.start_type,
                           range.start, stop_type, range.stop) != FALSE;
 }
@@ -178,6 +179,19 @@ TEST(OusterSeek, CountsFromTheEnd) {
   const auto rest = PlayOn(h);
   EXPECT_GE(rest.size(), 4U);
   EXPECT_LE(rest.size(), 5U);
+}
+
+TEST(OusterSeek, StopsBeforeTheEnd) {
+  const Harness h = Open(DataPath(kThreeScans));
+  const auto all = PlayOn(h);
+  ASSERT_EQ(all.size(), 24U);
+  // The stop lies in the middle of the fifth slice from the end.
+  ASSERT_TRUE(Seek(
+      h, {0, -static_cast<gint64>(4 * kSlice + kSlice / 2), GST_SEEK_TYPE_SET, GST_SEEK_TYPE_END}));
+  const auto part = PlayOn(h);
+  ASSERT_EQ(part.size(), 20U);
+  EXPECT_TRUE(part.front() == all.front());
+  EXPECT_TRUE(part.back() == all[19]);
 }
 
 TEST(OusterSeek, BeyondTheEndThereIsNothing) {
