@@ -121,6 +121,14 @@ TEST(OddScans, BeginsANewMapWhereItIsLostForGood) {
   EXPECT_LT(odometry.PredictAt(street.StartOf(i + 1)).position.norm(), 20);
 }
 
+/// Returns the deviation along x behind a scan that fits nothing [m].
+double DeviationOfALostScan(Drive* drive, std::uint64_t number, Odometry* odometry) {
+  TimedPoints nowhere = drive->Scan(number);
+  for (Eigen::Vector3d& point : nowhere.points) point.z() += 400;
+  const Estimate lost = odometry->OnScan(drive->StartOf(number), kPeriod, nowhere);
+  return std::sqrt(lost.covariance(0, 0));
+}
+
 TEST(OddScans, ForgetsTheVelocityThatLedToALoss) {
   Drive street(synth::SceneKind::kStreet, 10);
   Odometry odometry({});
@@ -136,6 +144,7 @@ TEST(OddScans, ForgetsTheVelocityThatLedToALoss) {
   ASSERT_TRUE(e.map_restarted);
   const Pose later = odometry.PredictAt(e.time + std::chrono::seconds(1));
   EXPECT_LT((later.position - e.pose.position).norm(), 1e-9) << "it stands until scans show more";
+  EXPECT_GT(DeviationOfALostScan(&street, i, &odometry), 1.4) << "it may drive 15 m/s";
 }
 
 TEST(OddScans, PredictsNothingForATimeThatIsFarAway) {
@@ -195,6 +204,7 @@ TEST(OddScans, BeginsANewMapAfterALongGap) {
   EXPECT_TRUE(later.map_restarted);
   const Pose predicted = odometry.PredictAt(later.time + std::chrono::seconds(1));
   EXPECT_LT((predicted.position - later.pose.position).norm(), 1e-9) << "no velocity is known";
+  EXPECT_GT(DeviationOfALostScan(&street, 101, &odometry), 1.4) << "it may drive 15 m/s";
   const Estimate earlier = odometry.OnScan(street.StartOf(2), kPeriod, street.Scan(2));
   EXPECT_TRUE(earlier.map_restarted);
 }

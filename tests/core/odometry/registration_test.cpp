@@ -84,6 +84,30 @@ TEST(Align, APredictionDoesNotPullWhereSurfacesHoldEveryDirection) {
   EXPECT_LT(found.pose.position.norm(), 0.001);
 }
 
+/// A floor and a wall along x, and poles that alone show the motion along x.
+TEST(Align, APredictionPullsWhereSurfacesLeaveADirectionOpen) {
+  Points scene = Floor();
+  for (double a = 0.05; a < 8; a += 0.25)
+    for (double b = 0.05; b < 8; b += 0.25) scene.emplace_back(a - 4, 4.5, b - 1.4);
+  for (const double x : {-3., -1., 1., 3.})
+    for (const double y : {-3., -1., 1., 3.})
+      for (const double z : {1., 3.}) scene.emplace_back(x, y, z);
+  LocalMap map = MapOf(scene);
+  RegistrationSettings settings;
+  settings.least_constraint = 0.002;
+  settings.least_balance = 0.005;
+  const auto find = [&](double information) {
+    Prediction prediction{Moved(0.2, 0, 0)};
+    prediction.information(0, 0) = information;
+    const auto found = Align({scene, {}}, &map, prediction, kReach_m, kKernel_m, settings);
+    EXPECT_FALSE(found.degenerate);
+    EXPECT_NEAR(found.pose.position.y(), 0, 0.005);
+    return found.pose.position.x();
+  };
+  EXPECT_NEAR(find(0), 0, 0.005);
+  EXPECT_NEAR(find(1e7), 0.2, 0.005);
+}
+
 TEST(Align, InATunnelOnlyTheMotionAlongItIsUnknown) {
   Points tunnel;
   for (double a = 0.05; a < 16; a += 0.25)
