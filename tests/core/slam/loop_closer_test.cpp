@@ -145,6 +145,8 @@ TEST(LoopCloser, GoesOnSolvingWhereTheMapsOfAClosureAreForgotten) {
   closer.Finish();
   EXPECT_GT(closer.solved(), 3U);
   EXPECT_LT(EndError(closer.Correct(drifted)), EndError(drifted) / 5);
+  // A map that is left drifts by the scans of those before it that are forgotten, too.
+  EXPECT_LT(MeanError(closer.Correct(drifted)), MeanError(drifted) / 5);
 }
 
 /// The possible drift is so large that all maps are candidates. The closer searches eight of them.
@@ -206,6 +208,23 @@ TEST(Place, IsFoundAgainTurnedMovedAndTilted) {
   const Pose off = moved.Inverse() * match->pose;
   EXPECT_LT(off.position.norm(), 1.5);
   EXPECT_LT(Angle(off), 0.05);
+}
+
+/// Columns, each with one point of ground.
+Points Columns(int count) {
+  Points columns;
+  for (int i = 0; i < count; ++i)
+    for (const double z : {0., 1., 2., 3.})
+      columns.emplace_back(2 * (i % 6) + 1, 2 * (i / 6) + 1, z);
+  return columns;
+}
+
+TEST(Place, IsFoundOnlyWithEnoughGroundInCommon) {
+  EXPECT_TRUE(Match(Place(Columns(30)), Place(Columns(30)), 0, 0));
+  EXPECT_TRUE(Match(Place(Columns(42)), Place(Columns(30)), 0, 0));
+  EXPECT_FALSE(Match(Place(Columns(29)), Place(Columns(29)), 0, 0));
+  EXPECT_FALSE(Match(Place(Columns(42)), Place(Columns(29)), 0, 0));
+  EXPECT_FALSE(Match(Place({}), Place(Columns(42)), 0, 0));
 }
 
 TEST(PoseGraph, SpreadsWhatALoopContradicts) {
