@@ -90,6 +90,27 @@ TEST(Town, TheRoadIsUnderTheSensorEverywhereOnTheWay) {
   }
 }
 
+TEST(Town, TheSensorStandsUprightOnItsRoadEverywhereOnTheWay) {
+  TrajectorySettings lane = Scene::Make(SceneKind::kTown, 1)->Lane(12);
+  lane.bounce = 0;
+  for (const double sway_m : {0., 2.}) {
+    lane.sway_m = sway_m;
+    const Trajectory trajectory(lane);
+    for (int second = 0; second < 180; second += 3) {
+      const Pose pose = trajectory.At(std::chrono::seconds(second));
+      const Terrain::Ground ground = Terrain::At({pose.x, pose.y});
+      EXPECT_NEAR(pose.z - ground.height, lane.sensor_height_m, 0.01) << second;
+      if (sway_m > 0) continue;  // the car then leaves the direction of the road
+      for (const Vec3 axis : {Vec3{1, 0, 0}, Vec3{0, 1, 0}}) {
+        const Vec3 world = pose.ToRotation() * axis;
+        const double rise = ground.slope_x * static_cast<double>(world.x) +
+                            ground.slope_y * static_cast<double>(world.y);
+        EXPECT_NEAR(static_cast<double>(world.z), rise, 0.001) << second;
+      }
+    }
+  }
+}
+
 TEST(Scanner, MixesPixelsAtEdgesOnly) {
   ScannerConfig config;
   config.sensor = *MakeSensor("os1-32", 512);
