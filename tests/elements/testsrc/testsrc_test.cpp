@@ -219,6 +219,23 @@ TEST(LidarTestSrc, ALiveSourceThatIsScansLateSkipsToThePresent) {
   EXPECT_EQ(GST_BUFFER_PTS(next.get()), GST_SECOND);
 }
 
+/// The clock of a pipeline goes on while one of its sources is stopped.
+TEST(LidarTestSrc, ALiveSourceBeginsWithItsFirstScanWheneverItStarts) {
+  const Harness h = Launch("is-live=true model=os1-32 mode=512x10");
+  test::UseTestClock(h.get());
+  for (const GstClockTime start : {GstClockTime{0}, GstClockTime{10 * GST_SECOND}}) {
+    gst_harness_set_time(h.get(), test::kClockStart + start);
+    SetPlaying(h.get());
+    ASSERT_TRUE(test::AwaitClockWait(h.get(), test::kClockStart + start + 12'500'000));
+    ASSERT_TRUE(gst_harness_crank_single_clock_wait(h.get()));
+    const BufferPtr first = Pull(h);
+    EXPECT_EQ(SliceOf(first).scan_id, 0U);
+    EXPECT_EQ(SliceOf(first).slice_index, 0U);
+    EXPECT_EQ(GST_BUFFER_PTS(first.get()), start);
+    gst_element_set_state(h->element, GST_STATE_READY);
+  }
+}
+
 TEST(LidarTestSrc, CaptureTimesAfterAPauseAreThoseOfTheDay) {
   const Harness h = Launch("is-live=true model=os1-32 mode=512x10");
   test::UseTestClock(h.get());
