@@ -39,6 +39,16 @@ TEST(Loop, DeliversEveryScanOverAConstantLink) {
   }
 }
 
+TEST(LoopCases, ThatBeginLaterHaveAnotherSceneAndTheRestOfTheirTrace) {
+  const LoopCase c = Case("drive_1");
+  for (int n = 0; n < 3; ++n) {
+    const LoopCase later = Later(c, n);
+    EXPECT_EQ(later.source.seed, c.source.seed + static_cast<unsigned>(n));
+    for (Duration t = 0s; t < 10s; t += 500ms)
+      EXPECT_EQ(later.capacity.RateAt(t), c.capacity.RateAt(t + n * 7330ms)) << n;
+  }
+}
+
 TEST(Loop, AnEncoderThatDoesNotAdaptPutsOutTheCoarsestStep) {
   LoopCase c = Case("constant");
   c.source.adapts = false;

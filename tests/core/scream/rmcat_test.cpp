@@ -85,6 +85,14 @@ TEST_F(RmcatFigures, TakeBackgroundFlowsForWhatTheyCanUse) {
   EXPECT_DOUBLE_EQ(m.file_s, 3);
 }
 
+TEST_F(RmcatFigures, TakeABackgroundFlowThatStopsForWhatItSentUntilThen) {
+  TcpConfig config;
+  config.stop = 2s;
+  AddOther(config);
+  Send(1500ms, 1);
+  EXPECT_DOUBLE_EQ(Get().others_mbps, 0.8);
+}
+
 TEST_F(RmcatFigures, CompareTheSharesOfTheFlows) {
   AddFlow();
   for (const Duration at : {1200ms, 1600ms, 2400ms}) Send(at);
@@ -124,6 +132,117 @@ TEST_F(RmcatFigures, CompareTheFirstStreamOfASenderWithItsSecond) {
   Send(2s).source = 1;
   ASSERT_TRUE(Get().stream_ratio);
   EXPECT_DOUBLE_EQ(*Get().stream_ratio, 3);
+}
+
+/// The value and the goal of a figure, by its name; -1: no goal.
+struct Row {
+  const char* name;
+  double value;
+  double goal = -1;
+};
+void ExpectRows(const std::vector<Figure>& figures, const std::vector<Row>& rows) {
+  ASSERT_EQ(figures.size(), rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    EXPECT_STREQ(figures[i].kind->name, rows[i].name);
+    EXPECT_DOUBLE_EQ(figures[i].value, rows[i].value) << rows[i].name;
+    EXPECT_DOUBLE_EQ(figures[i].goal.value_or(-1), rows[i].goal) << rows[i].name;
+  }
+}
+
+/// Metrics that all differ.
+ScenarioMetrics AnyMetrics() {
+  ScenarioMetrics m;
+  m.utilisation = 0.5;
+  m.queue_ms = {1, 2, 3, 4};
+  m.frame_ms = {5, 6, 7, 8};
+  m.own_loss = 0.25;
+  m.jain = 0.9;
+  m.start_s = 10;
+  m.start_peak_ms = 11;
+  m.frames_dropped = 12;
+  m.drop = {13, 14, 15};
+  return m;
+}
+
+TEST(FiguresOfRuns, OfAScenarioHaveItsGoalsAlsoThatOfNoLoss) {
+  Scenario s;
+  s.name = "frames_20M_rtt25";
+  ExpectRows(Figures(s, AnyMetrics()), {{"utilisation [%]", 50, 98},
+                                        {"queue p95 [ms]", 2, 5},
+                                        {"queue p99 [ms]", 3, 4},
+                                        {"queue max [ms]", 4, 10},
+                                        {"frame p95 [ms]", 6, 35},
+                                        {"frame p99 [ms]", 7},
+                                        {"own loss [%]", 25, 0},
+                                        {"Jain's index", 0.9, 0.99},
+                                        {"frames dropped", 12},
+                                        {"start [s]", 10, 1.5},
+                                        {"queue of the start [ms]", 11, 30}});
+}
+
+TEST(FiguresOfRuns, OfAScenarioWithADropOrOtherFlowsShowThese) {
+  Scenario s;
+  s.name = "of no goal";
+  s.drop_at = 10s;
+  ScenarioMetrics m = AnyMetrics();
+  m.beside = BesideMetrics{2, 8, 0.125};
+  ExpectRows(Figures(s, m), {{"utilisation [%]", 50},
+                             {"queue p95 [ms]", 2},
+                             {"queue p99 [ms]", 3},
+                             {"queue max [ms]", 4},
+                             {"frame p95 [ms]", 6},
+                             {"frame p99 [ms]", 7},
+                             {"own loss [%]", 25},
+                             {"Jain's index", 0.9},
+                             {"frames dropped", 12},
+                             {"larger over smaller share", 4},
+                             {"ours [Mbit/s]", 2},
+                             {"theirs [Mbit/s]", 8},
+                             {"their loss [%]", 12.5},
+                             {"drop: peak [ms]", 13, 150},
+                             {"drop: below 10 ms [s]", 14, 0.35},
+                             {"drop: rate below [s]", 15, 0.15}});
+}
+
+TEST(FiguresOfRuns, OfRmcatAreLimitedWhereTheFlowsAreAlone) {
+  RmcatMetrics m;
+  m.utilisation = 0.5;
+  m.media_mbps = 1;
+  m.variation = 2;
+  m.jain = 0.8;
+  m.queue_ms = {3, 4, 5, 6};
+  m.frame_ms = {7, 8, 9, 10};
+  m.loss = 0.25;
+  m.dropped = 0.125;
+  m.feedback = 0.0625;
+  m.others_mbps = 11;
+  RmcatCase c;
+  ExpectRows(Figures(c, m), {{"utilisation [%]", 50, 80},
+                             {"media [Mbit/s]", 1, 0.15},
+                             {"variation of the rate", 2},
+                             {"queue p95 [ms]", 4, 100},
+                             {"queue p99 [ms]", 5},
+                             {"frame p95 [ms]", 8},
+                             {"own loss [%]", 25, 1},
+                             {"frames dropped [%]", 12.5, 2},
+                             {"feedback over media [%]", 6.25}});
+  c.config.others.emplace_back();
+  c.forward = {0, 1};
+  m.file_s = 12;
+  m.stream_ratio = 13;
+  ExpectRows(Figures(c, m), {{"utilisation [%]", 50},
+                             {"media [Mbit/s]", 1, 0.15},
+                             {"variation of the rate", 2},
+                             {"queue p95 [ms]", 4},
+                             {"queue p99 [ms]", 5},
+                             {"frame p95 [ms]", 8},
+                             {"own loss [%]", 25, 1},
+                             {"frames dropped [%]", 12.5},
+                             {"feedback over media [%]", 6.25},
+                             {"Jain's index", 0.8, 0.9},
+                             {"others [Mbit/s]", 11},
+                             {"a file of theirs [s]", 12},
+                             {"two streams' ratio", 13, 1.5}});
 }
 
 TEST(FiguresOfRuns, AreBetterByMoreThanWhatIsIgnored) {
