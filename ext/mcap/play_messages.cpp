@@ -47,7 +47,7 @@ void WarnOfUnclosed(GstElement* element, guint64 files) {
   GST_ELEMENT_WARNING(
       element, STREAM, DEMUX,
       ("%" G_GUINT64_FORMAT " files of the recording were not closed, or are still being written. "
-                            "They are played up to their last whole chunk.",
+       "They are played up to their last whole chunk.",
        files),
       (nullptr));
 }

@@ -637,7 +637,7 @@ TEST_F(NatsJetStream, AStreamThatCannotBeMadeIsToldOfWithTheReasonAndItsNumber) 
   const std::string warning =
       sender.WaitForWarning("The stream other cannot be created or updated: ");
   EXPECT_NE(warning.find("overlap"), warning.npos) << warning;
-  EXPECT_NE(warning.find(" (10065); messages wait"), warning.npos) << warning;
+  EXPECT_NE(warning.find(" (10065); until this is solved"), warning.npos) << warning;
 }
 
 TEST_F(NatsJetStream, AServerWithoutJetStreamIsToldOf) {

@@ -235,7 +235,8 @@ TEST(OusterHostile, AnAngleListOfAMillionIsRefusedAtOnce) {
   root["beam_intrinsics"]["beam_azimuth_angles"] = std::vector<int>(1'000'000, 1);
   const TempFile file("million.json", root.dump());
   const Ending ending = RunFile(DataPath("windowed_frame1.pcap"), file.path());
-  EXPECT_NE(ending.error.find("beam_azimuth_angles must list"), std::string::npos) << ending.error;
+  EXPECT_NE(ending.error.find("beam_azimuth_angles must be a list"), std::string::npos)
+      << ending.error;
 }
 
 }  // namespace

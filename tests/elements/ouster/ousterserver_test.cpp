@@ -236,7 +236,7 @@ std::string ErrorAmid() {
 
 TEST(OusterThread, ThatCannotBeStartedIsAnElementError) {
   const std::string error = ErrorAmid<ScarceThreads>();
-  EXPECT_NE(error.find("Cannot start a thread"), std::string::npos) << error;
+  EXPECT_NE(error.find("cannot start a thread"), std::string::npos) << error;
 }
 
 /// Limits the process to ten more open files, as `ulimit -n` does.

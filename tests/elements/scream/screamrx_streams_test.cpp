@@ -427,7 +427,8 @@ TEST_F(ScreamRx, MakesSoManyPadsAtMostAndForgetsThemWhenItStops) {
     EXPECT_EQ(GST_ELEMENT(element)->numsrcpads, 1'024);      // including rtcp_src and `src`
     EXPECT_EQ(Stats(element)["packets-foreign"], 77U);
     const auto told = bus.Texts(GST_MESSAGE_WARNING);
-    EXPECT_EQ(std::count(told.begin(), told.end(), "More than 1024 streams."), 1) << "once a run";
+    EXPECT_EQ(std::count(told.begin(), told.end(), "More than 1024 streams arrive."), 1)
+        << "once a run";
     gpointer pad = gst_element_get_static_pad(element, "src_2");
     ASSERT_TRUE(pad);
     g_object_add_weak_pointer(G_OBJECT(pad), &pad);
