@@ -161,7 +161,10 @@ End Play(Session* session, double duration_s, const bool* run, std::string* why)
     if (GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_EOS) return End::kOver;
     if (session->refused) break;
     *why = lidar::tools::MessageText(message.get());
-    return IsOfDtls(GST_MESSAGE_SRC(message.get())) ? End::kNoHandshake : End::kFailed;
+    if (!IsOfDtls(GST_MESSAGE_SRC(message.get()))) return End::kFailed;
+    // Leaves out the name of the element: automatic names have another number in each session.
+    *why = "The handshake failed" + why->substr(why->find(": "));
+    return End::kNoHandshake;
   }
   *why = "REFUSED: the peer's certificate is not the one to trust.";
   return session->refused ? End::kNoHandshake : End::kOver;
