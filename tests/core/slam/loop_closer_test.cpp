@@ -126,6 +126,14 @@ TEST(LoopCloser, MovesTheClosureOfAForgottenMapToTheOneBefore) {
   EXPECT_NEAR(closure.pose.position.norm(), std::sqrt(0.5) * kScansOfAMap * step_m, 5);
 }
 
+/// Returns the mean distance of the poses from the true ones [m].
+double MeanError(const odometry::Trajectory& way) {
+  double sum = 0;
+  for (std::size_t i = 0; i < way.size(); ++i)
+    sum += (way[i].pose.position - TrueAt(static_cast<int>(i)).position).norm();
+  return sum / static_cast<double>(way.size());
+}
+
 /// The drive has three laps around the block. There is room for so few maps that the closer also
 /// forgets the maps of a closure.
 TEST(LoopCloser, GoesOnSolvingWhereTheMapsOfAClosureAreForgotten) {
