@@ -115,7 +115,7 @@ def what_is_wrong_is_said(folder):
     times.write_text(good.splitlines()[1] + "\n" + good)
     assert "line 2 is not later" in run("slam", f"kitti:{folder}", fails=True)
     times.write_text("0.0\nsoon\n")
-    assert "line 2 is no time" in run("slam", f"kitti:{folder}", fails=True)
+    assert "line 2 is not a time" in run("slam", f"kitti:{folder}", fails=True)
     times.write_text("")
     assert "times.txt: has no time" in run("slam", f"kitti:{folder}", fails=True)
     times.write_text(good + "1e3\n")
