@@ -188,7 +188,7 @@ TEST_P(CloudCaps, AreRefusedWithTheRealReason) {
 INSTANTIATE_TEST_SUITE_P(
     All, CloudCaps,
     ::testing::Values(
-        BadCaps{"video/x-raw", "video/x-raw is no application/x-pointcloud2"},
+        BadCaps{"video/x-raw", "video/x-raw is not application/x-pointcloud2"},
         BadCaps{"application/x-pointcloud2", "fields is missing"},
         BadCaps{"application/x-pointcloud2,fields=(string)\"x:F32:0\"", "point-step is missing"},
         BadCaps{"application/x-pointcloud2,point-step=8,fields=(string)\"x:F32:0,z:F32:8\"",
