@@ -82,16 +82,20 @@ inline void PrintStats(GstElement* bin, const std::string& names, const std::str
   std::fflush(stdout);
 }
 
-/// Returns the text of an error or a warning. It begins with the name of the object that posted the
-/// message.
-inline std::string MessageText(GstMessage* message) {
+/// Returns the text of an error or a warning.
+inline std::string ErrorText(GstMessage* message) {
   GError* raw = nullptr;
   if (GST_MESSAGE_TYPE(message) == GST_MESSAGE_ERROR)
     gst_message_parse_error(message, &raw, nullptr);
   else
     gst_message_parse_warning(message, &raw, nullptr);
   const gst::ErrorPtr error(raw);
-  return Printable(std::string(GST_MESSAGE_SRC_NAME(message)) + ": " + error->message);
+  return Printable(error->message);
+}
+
+/// Returns the name of the object that posted an error or a warning, and the text of the message.
+inline std::string MessageText(GstMessage* message) {
+  return Printable(GST_MESSAGE_SRC_NAME(message)) + ": " + ErrorText(message);
 }
 
 }  // namespace lidar::tools

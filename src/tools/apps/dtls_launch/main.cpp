@@ -160,11 +160,13 @@ End Play(Session* session, double duration_s, const bool* run, std::string* why)
     if (!message) continue;
     if (GST_MESSAGE_TYPE(message.get()) == GST_MESSAGE_EOS) return End::kOver;
     if (session->refused) break;
+    if (IsOfDtls(GST_MESSAGE_SRC(message.get()))) {
+      // Leaves out the name of the element: automatic names have another number in each session.
+      *why = "The handshake failed: " + lidar::tools::ErrorText(message.get());
+      return End::kNoHandshake;
+    }
     *why = lidar::tools::MessageText(message.get());
-    if (!IsOfDtls(GST_MESSAGE_SRC(message.get()))) return End::kFailed;
-    // Leaves out the name of the element: automatic names have another number in each session.
-    *why = "The handshake failed" + why->substr(why->find(": "));
-    return End::kNoHandshake;
+    return End::kFailed;
   }
   *why = "REFUSED: the peer's certificate is not the one to trust.";
   return session->refused ? End::kNoHandshake : End::kOver;
