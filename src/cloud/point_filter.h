@@ -13,7 +13,7 @@
 
 namespace lidar {
 
-/// What replaces points without a return, and points that the filter removes.
+/// The values that replace points without a return, and points that the filter removes.
 enum class InvalidPoints {
   kKeep,    // points without a return are kept; removed points become zero
   kZero,    // all fields zero

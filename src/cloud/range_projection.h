@@ -54,7 +54,7 @@ class RangeProjection {
   std::vector<Vector> beams_;  // directions at encoder angle 0
   std::vector<Column> columns_;
   /// The columns transposed: first the nine numbers of the rotation, then the three of the offset.
-  /// So the numbers of neighbouring columns are adjacent and can be computed at once.
+  /// Therefore the numbers of neighbouring columns are adjacent and can be computed at once.
   std::array<std::vector<float>, 12> numbers_;
   float beam_origin_m_ = 0;  // length of the vector beam_to_lidar [m]
 };

@@ -14,7 +14,7 @@
 
 namespace lidar::codec {
 
-/// What is known about the earlier ranges of a pixel.
+/// The statistics of the earlier ranges of a pixel.
 struct PixelMemory {
   std::uint32_t mean = 0;    // mean range, in 1/8 mm
   std::uint16_t spread = 0;  // mean distance of ranges from `mean`, in 1/8 mm

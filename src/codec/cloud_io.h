@@ -35,7 +35,7 @@ struct CloudLayout {
   }
 };
 
-/// What the caps of a stream say about each raw slice.
+/// The format of the raw slices of a stream, as its caps describe it.
 struct CloudFormat {
   CloudLayout layout;
   std::uint32_t height = 1;  // beams, if the cloud is organised

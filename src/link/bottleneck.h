@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// One direction of a path: random loss, a queue before a link of changing capacity, and
-// propagation.
+// Simulates one direction of a path: random loss, then a queue before a link of changing capacity,
+// then propagation.
 #pragma once
 #include <cstdint>
 #include <memory>

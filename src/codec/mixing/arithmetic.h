@@ -65,8 +65,8 @@ struct Counter {
     const std::uint32_t mirror = bit ? 65'535 : 0;
     const std::uint32_t miss = chance ^ mirror;
     chance = static_cast<std::uint16_t>((miss - (miss * rate >> 16)) ^ mirror);
-    // As a fraction of kOne, the rate becomes about rate / (1 + rate). It is thus about 1/n after n
-    // bits.
+    // The rate becomes about rate / (1 + rate), both as fractions of kOne. After n bits it is thus
+    // about 1/n.
     const std::uint32_t square = std::uint32_t{rate} * rate >> 16;
     rate = static_cast<std::uint16_t>(rate - (rate * (rate - (square >> 1)) >> 16));
   }

@@ -17,7 +17,7 @@ constexpr std::int32_t kUnknown = 0;
 
 inline std::int32_t CentreOf(std::int32_t bin) { return kStep * bin + kStep / 2; }
 
-/// What is known at one azimuth from the beams above the current beam.
+/// The returns at one azimuth of the beams above the current beam.
 struct Azimuth {
   std::array<std::int32_t, 3> values{};  // of the newest three returns, newest first
   std::int8_t residual = 0;              // prediction error in the beam above, -3 to 3

@@ -50,7 +50,7 @@ class BlendedChannel {
     std::int32_t other = kUnknown;  // value to the left of the last jump
     std::uint32_t next = 0;         // column after the last value
   };
-  /// What is known about a value before it is coded.
+  /// The prediction of a value, made before the value is coded.
   struct View {
     std::int32_t median;
     std::int32_t mirror;  // 1 or -1

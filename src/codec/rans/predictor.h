@@ -11,7 +11,7 @@
 
 namespace lidar::codec {
 
-/// What is known about a value before it is coded.
+/// The prediction of a value, made before the value is coded.
 struct Prediction {
   std::int32_t value = 0;
   unsigned context = 0;     // how uneven the neighbourhood is, 0 .. kContexts - 1
