@@ -2,6 +2,7 @@
 // Tests of ouster_src with all kinds of addresses, and of several sources on one port. The tests of
 // multicast run in a network namespace of their own, so they need root.
 #include <net/if.h>
+#include <netdb.h>
 #include <sched.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
@@ -50,12 +51,21 @@ bool AddEthernets() {
 const bool kOwnNetwork = EnterOwnNetwork();
 const bool kEthernet = kOwnNetwork && AddEthernets();
 
+/// Returns false on a machine without /etc/hosts, such as a new root that a script made.
+bool HasLocalhost() {
+  addrinfo* found = nullptr;
+  if (getaddrinfo("localhost", nullptr, nullptr, &found) != 0) return false;
+  freeaddrinfo(found);
+  return true;
+}
+
 std::string SerialOf(const gst::MessagePtr& message) {
   const char* serial = gst_structure_get_string(gst_message_get_structure(message.get()), "serial");
   return serial != nullptr ? serial : "";
 }
 
 TEST(OusterNetwork, AHostNameGoesThroughTheResolver) {
+  if (!HasLocalhost()) GTEST_SKIP() << "this machine does not know the name localhost";
   SoftwareSensor sensor({});
   Receiver receiver("localhost:" + sensor.port(), "udp-dest=localhost");
   EXPECT_TRUE(receiver.Pull());
