@@ -32,7 +32,8 @@ class Receiver {
   }
 
   void SetState(GstState state) { gst_element_set_state(harness_->element, state); }
-  /// Returns the next buffer, or null if none arrives in time.
+  /// Returns the next buffer. Returns null if none arrives in time or if the element has ended the
+  /// stream, for example after an error.
   gst::BufferPtr Pull() { return Pull(g_get_monotonic_time() + kPatience_us); }
   void Drain() {
     while (gst_harness_buffers_in_queue(harness_.get()) > 0) Pull();
@@ -87,8 +88,9 @@ class Receiver {
  private:
   gst::BufferPtr Pull(gint64 end) {
     for (;;) {
+      const bool ended = GST_PAD_IS_EOS(harness_->sinkpad);
       gst::BufferPtr buffer(gst_harness_try_pull(harness_.get()));
-      if (buffer || g_get_monotonic_time() >= end) return buffer;
+      if (buffer || ended || g_get_monotonic_time() >= end) return buffer;
       g_usleep(500);
     }
   }
