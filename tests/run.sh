@@ -152,7 +152,8 @@ sanitized_ready() {
 # at the end.
 shorten() { grep -vE '^$|^ninja|Full log|^(Ok|Expected Fail|Fail|Unexpected Pass|Skipped|Timeout):'; }
 
-# results DIR NAME: prints the logs of meson that are called NAME or NAME-WRAPPER.
+# results DIR NAME: prints the logs of meson that are called NAME or NAME-WRAPPER. No log has the
+# name that meson uses by default, so `meson test` can run by hand at the same time.
 results() { cat "$1/meson-logs/$2".json "$1/meson-logs/$2"-*.json 2>/dev/null; }
 forget() { rm -f "$1/meson-logs/$2".json "$1/meson-logs/$2"-*.json; }
 
@@ -188,13 +189,13 @@ run() {
   shift 2
   for suite in "${suites[@]}"; do chosen+=(--suite "$suite"); done
   echo "== $(basename "$dir"): ${suites[*]} (${SECONDS}s)"
-  forget "$dir" testlog
-  meson test -C "$dir" --no-rebuild "${patient[@]}" "${chosen[@]}" --print-errorlogs "$@" 2>&1 | shorten
+  forget "$dir" suites
+  meson test -C "$dir" --no-rebuild "${patient[@]}" "${chosen[@]}" --logbase suites --print-errorlogs "$@" 2>&1 | shorten
   # An exit code of 128 or more means that a signal killed meson. Results of tests may then be
   # missing.
   [ "${PIPESTATUS[0]}" -lt 128 ] || failed=$((failed + 1))
   [ "${suites[*]}" != pipelines ] || return 0
-  for suite in "${suites[@]}"; do settle "$dir" "$suite" testlog; done
+  for suite in "${suites[@]}"; do settle "$dir" "$suite" suites; done
 }
 
 # Runs the suites `pipelines` and `beside` at the same time. Tests of pipelines stream in real time,
@@ -210,7 +211,7 @@ run_pipelines() {
   wait "$beside"
   [ $? -lt 128 ] || failed=$((failed + 1))
   shorten <"$dir/beside.log"
-  settle "$dir" pipelines testlog
+  settle "$dir" pipelines suites
   settle "$dir" beside beside
 }
 
