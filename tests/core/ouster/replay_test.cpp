@@ -339,6 +339,21 @@ TEST(PlayerFaults, KeepNoPacketBackAtTheEnd) {
   EXPECT_EQ(player.counts().sent, 3U);
 }
 
+TEST(PlayerFaults, TakeEffectBeforeAllLatePacketsAreSent) {
+  ReplayOptions options;
+  const ouster::Metadata metadata = MakeSynthMetadata(options.synth, options.format);
+  Sensor sensor(metadata, "", [&](const nlohmann::json&) { return metadata; });
+  Player player(options, metadata, &sensor,
+                [](const ouster::Metadata&) { return std::make_unique<FewPackets>(1000); });
+  const Time now = Now();
+  EXPECT_LE(player.Pump(now), now) << "the next packets are due at once";
+  sensor.MergeFaults({{"silent", true}});
+  while (player.Pump(now)) continue;
+  EXPECT_GT(player.counts().sent, 0U);
+  EXPECT_GT(player.counts().silenced, 900U);
+  EXPECT_EQ(player.counts().sent + player.counts().silenced, 1000U);
+}
+
 /// A sensor that sends one packet now, and each further packet an hour later.
 class OnePacketNow final : public PacketStream {
  public:

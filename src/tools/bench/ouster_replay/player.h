@@ -26,8 +26,8 @@ class Player {
   Player(const ReplayOptions& options, const ouster::Metadata& metadata, Sensor* sensor,
          MakeStream make_stream);
 
-  /// Sends the packets that are due. Returns the time of the next call, or nothing at the end of
-  /// the stream.
+  /// Sends the packets that are due, but only a few of them if many are due. Returns the time of
+  /// the next call, or nothing at the end of the stream.
   std::optional<Time> Pump(Time now);
   /// Sends the packet that was held back for reordering, if there is one.
   void Finish() { SendHeld(sensor_.destination()); }
