@@ -8,6 +8,7 @@
 
 #include "gst/net/udp_socket.h"
 #include "tests/elements/scream/bonded_ends.h"
+#include "tests/support/free_ports.h"
 #include "tests/support/test_certificates.h"
 
 namespace lidar::test {
@@ -49,7 +50,7 @@ TEST_P(BondedDtls, GoesOnOverOneLinkWhereTheOtherDies) {
   });
   // On a busy machine some packets of the dead link may be too old to be sent again over the other
   // link.
-  EXPECT_LT(PacketsOf(out.get()) - receiver.passed, kAfterDeath / 2);
+  EXPECT_LT(PacketsOf(out.get()), receiver.passed + TooOld(out.get()) + kAfterDeath / 2);
   EXPECT_EQ(Stats(out.get())["dtls-handshakes"], 1U);
   EXPECT_EQ(Stats(in.get())["dtls-handshakes"], 1U);
   EXPECT_EQ(Stats(out.get())["srtp-refused"], 0U);
@@ -72,7 +73,7 @@ TEST(Dtls, BothLinksCarryWhatOneHandshakeProtects) {
 }
 
 TEST(Dtls, TakesTheEdgeThatRestartsByAnotherHandshake) {
-  auto receiver = std::make_unique<BondReceiver>(OfEdge());
+  auto receiver = std::make_unique<BondReceiver>(OfEdge() + " port=" + std::to_string(FreePort()));
   Router router(receiver->port);
   Pipeline sender(Bonded(router.Addresses(), OfRobot()));
   const ElementPtr out = sender.Get("out");
@@ -80,7 +81,6 @@ TEST(Dtls, TakesTheEdgeThatRestartsByAnotherHandshake) {
   sender.Play();
   ASSERT_TRUE(Eventually([&] { return receiver->passed >= 50; }));
   const ElementPtr in = receiver->pipeline.Get("in");
-  g_object_set(in.get(), "port", std::stoi(receiver->port), nullptr);
   gst_element_set_state(in.get(), GST_STATE_NULL);
   const guint before = receiver->passed;
   gst_element_set_state(in.get(), GST_STATE_PLAYING);
@@ -119,10 +119,10 @@ TEST(Dtls, ARobotRefusesAnotherEdge) {
   ASSERT_TRUE(message);
   EXPECT_NE(MessageText(message.get()).find("its certificate is not the one to trust"),
             std::string::npos);
+  EXPECT_TRUE(Eventually([&] { return Stats(sender.Get("out").get())["packets-unkeyed"] > 0; }));
   EXPECT_GE(Stats(sender.Get("out").get())["dtls-refused"], 1U);
   EXPECT_EQ(Stats(sender.Get("out").get())["dtls-handshakes"], 0U);
   EXPECT_EQ(Stats(sender.Get("out").get())["packets-sent"], 0U) << "nothing leaves without a key";
-  EXPECT_GT(Stats(sender.Get("out").get())["packets-unkeyed"], 0U);
   EXPECT_EQ(Stats(sender.Get("out").get())["dtls-dropped"], 0U);
 }
 
@@ -177,7 +177,7 @@ TEST(Dtls, WhatIsNotLiveWaitsForTheKeyAndLosesNothing) {
   Pipeline sender(
       "audiotestsrc num-buffers=20 samplesperbuffer=441 ! "
       "audio/x-raw,rate=44100,channels=1,format=S16BE ! rtpL16pay ! screamsink name=out port=" +
-      receiver.port + OfRobot());
+      receiver.port + " " + kPatientQueue + OfRobot());
   sender.Play();
   g_usleep(300'000);
   EXPECT_EQ(Stats(sender.Get("out").get())["packets-unkeyed"], 0U);
@@ -214,7 +214,7 @@ class WaitingSource {
       flow = gst_pad_push(src_.get(), NewRtp({}));
       is_done = true;
     });
-    g_usleep(100'000);
+    EXPECT_TRUE(Eventually([&] { return gst_pad_is_blocking(entry_.get()) != FALSE; }));
     EXPECT_FALSE(is_done);
     wake();
     pusher.join();

@@ -182,14 +182,15 @@ TEST(Bonding, GoesOnWhereTheAddressOfALinkChangesEachSecond) {
   router.moves_each_ms = 1'000;
   Pipeline sender(Bonded(router.Addresses()));
   const ElementPtr out = sender.Get("out"), in = receiver.pipeline.Get("in");
-  Stream(sender, receiver, [&] { return router.moves >= 4 && receiver.passed >= 450; });
+  Stream(sender, receiver, [&] {
+    return router.moves >= 4 && receiver.passed >= 450 &&
+           OfLinks(out.get(), "feedback-accepted")[1] > 50;  // each address is answered
+  });
   // Each time the router changes the address of link 1, it loses the datagrams that wait in the old
   // socket.
-  EXPECT_GE(receiver.passed, PacketsOf(out.get()) * 9 / 10);
+  EXPECT_GE(receiver.passed + TooOld(out.get()), PacketsOf(out.get()) * 9 / 10);
   EXPECT_EQ(OfLinks(out.get(), "packets-sent").size(), 2U);
   EXPECT_LE(OfLinks(in.get(), "packets-received").size(), 4U);
-  const auto accepted = OfLinks(out.get(), "feedback-accepted");
-  EXPECT_GT(accepted[1], 50U) << "each address is answered";
 }
 
 TEST(Bonding, ShowsEachLinksFigures) {
@@ -379,7 +380,8 @@ TEST(Bonding, TakesANewKeyWithoutAGap) {
     EXPECT_EQ(Stats(out.get())["srtp-key-changes"], 0U) << "feedback has the key of the media";
     g_object_set(out.get(), "srtp-key", new_key.c_str(), nullptr);
     const guint passed = receiver.passed;
-    return Eventually([&] { return receiver.passed >= passed + 40; });
+    return Eventually(
+        [&] { return receiver.passed >= passed + 40 && Stats(out.get())["srtp-key-changes"] > 0; });
   });
   ExpectAllPassed(receiver, sender, PacketsOf(out.get()));
   EXPECT_EQ(Stats(out.get())["srtp-key-changes"], 1U);
@@ -390,7 +392,7 @@ TEST(Bonding, TakesANewKeyWithoutAGap) {
 TEST(Bonding, StartsAgainAndWithOneLink) {
   BondReceiver receiver;
   const std::string to = "127.0.0.1:" + receiver.port;
-  Pipeline sender(Bonded(to + "@127.0.0.1," + to + "@127.0.0.2"));
+  Pipeline sender(Bonded(to + "@127.0.0.1," + to + "@127.0.0.2", kPatientQueue));
   const ElementPtr out = sender.Get("out");
   g_object_set(sender.Get("src").get(), "num-buffers", 5, nullptr);
   for (int i = 0; i < 3; ++i) {

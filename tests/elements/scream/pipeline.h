@@ -28,6 +28,10 @@ inline guint PortOf(GstElement* source) {
   return port;
 }
 
+/// The queue of a screamsink for tests in which no packet may be dropped. A busy machine may stop a
+/// thread for longer than the default allows packets to wait.
+inline const std::string kPatientQueue = "max-queue-delay=5000000000";
+
 class Pipeline {
  public:
   explicit Pipeline(const std::string& text) {

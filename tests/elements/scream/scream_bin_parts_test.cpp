@@ -8,6 +8,7 @@
 
 #include "tests/elements/scream/pipeline.h"
 #include "tests/elements/scream/rtp_support.h"
+#include "tests/support/free_ports.h"
 #include "tests/support/ipv6.h"
 
 namespace lidar::test {
@@ -277,7 +278,7 @@ TEST_F(ScreamBin, TheSinkKeepsNoLinkOfAStartThatFailed) {
 
 TEST_F(ScreamBin, TheSourceDoesNotStartWhereItsPortIsTaken) {
   Make("screamsrc");
-  g_object_set(bin_.get(), "port", 0, nullptr);
+  g_object_set(bin_.get(), "port", FreePort(), nullptr);
   ASSERT_EQ(To(GST_STATE_READY), GST_STATE_CHANGE_SUCCESS);
   const OwnedElement first = std::move(bin_);
   Make("screamsrc");

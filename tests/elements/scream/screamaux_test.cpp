@@ -2,11 +2,13 @@
 // Tests of screamaux before a session whose events the test sends, and before GStreamer's own
 // rtpbin.
 #include <gtest/gtest.h>
-#include <unistd.h>
+
+#include <array>
 
 #include "src/rtcp/twcc_mapper.h"
 #include "tests/elements/scream/pipeline.h"
 #include "tests/elements/scream/rtp_support.h"
+#include "tests/support/free_ports.h"
 #include "tests/support/patience.h"
 
 namespace lidar::test {
@@ -378,9 +380,9 @@ TEST_P(ScreamAuxWithRtpbin, TheReceiversReportsMoveTheTarget) {
                                "application/x-rtp,media=video,clock-rate=90000,"
                                "encoding-name=JPEG,payload=26,extmap-1=(string)") +
                            rtcp::kTwccUri;
-  const int first = 40000 + 3 * (getpid() % 8000);
-  const auto at = [&](const char* element, int offset) {
-    const std::string port = " port=" + std::to_string(first + offset) + " ";
+  const std::array<guint16, 3> ports{FreePort(), FreePort(), FreePort()};
+  const auto at = [&](const char* element, std::size_t offset) {
+    const std::string port = " port=" + std::to_string(ports.at(offset)) + " ";
     if (std::string(element) == "udpsrc") return "udpsrc" + port;
     return "udpsink host=127.0.0.1 sync=false async=false" + port;
   };

@@ -523,10 +523,9 @@ TEST_F(ScreamTx, SaysOnceThatNobodyAnswersAndEachTimeThatSomebodyDoesAgain) {
       if (answer) Acknowledge();
     }
   };
-  const auto next = [&]() -> gst::MessagePtr {
+  const auto next = [&](GstClockTime timeout = kPatience_ns) -> gst::MessagePtr {
     for (;;) {
-      gst::MessagePtr message =
-          bus.Wait(GST_MESSAGE_ELEMENT | GST_MESSAGE_WARNING, 300 * GST_MSECOND);
+      gst::MessagePtr message = bus.Wait(GST_MESSAGE_ELEMENT | GST_MESSAGE_WARNING, timeout);
       if (!message || !gst_message_has_name(message.get(), "scream-ecn-state-changed"))
         return message;
     }
@@ -538,7 +537,7 @@ TEST_F(ScreamTx, SaysOnceThatNobodyAnswersAndEachTimeThatSomebodyDoesAgain) {
            present == wanted;
   };
   run(38, false);
-  EXPECT_FALSE(next());
+  EXPECT_FALSE(next(300 * GST_MSECOND));
   run(10, false);  // together longer than 2 s
   gst::MessagePtr message = next();
   ASSERT_TRUE(message);
@@ -551,12 +550,12 @@ TEST_F(ScreamTx, SaysOnceThatNobodyAnswersAndEachTimeThatSomebodyDoesAgain) {
   EXPECT_TRUE(tells(next(), TRUE));
   run(60, false);
   EXPECT_TRUE(tells(next(), FALSE));  // there is no second warning
-  EXPECT_FALSE(next());
+  EXPECT_FALSE(next(300 * GST_MSECOND));
   gst_element_set_state(element, GST_STATE_READY);
   gst_element_set_state(element, GST_STATE_PLAYING);
   gst_harness_play(rtp.get());
   run(38, false);
-  EXPECT_FALSE(next());
+  EXPECT_FALSE(next(300 * GST_MSECOND));
   run(10, false);  // the next message is the first of this run
   message = next();
   ASSERT_TRUE(message);

@@ -332,7 +332,7 @@ TEST_F(ScreamTxOf, AFileWaitsBehindItsFirstPacketWhileItIsPaused) {
 TEST_F(ScreamTxOf, APacketThatWaitsForItsTimeEntersAtAPause) {
   StartLive(false);
   auto pushed = PushAt(0, 3600 * GST_SECOND);
-  EXPECT_TRUE(gst_harness_wait_for_clock_id_waits(rtp.get(), 1, 180));
+  EXPECT_TRUE(gst_harness_wait_for_clock_id_waits(rtp.get(), 1, kPatience.count()));
   gst_element_set_state(element, GST_STATE_PAUSED);
   EXPECT_TRUE(IsIn(pushed, kPatience));
   if (!IsIn(pushed, std::chrono::seconds(0))) gst_harness_crank_single_clock_wait(rtp.get());
