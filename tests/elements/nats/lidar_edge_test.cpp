@@ -213,7 +213,8 @@ TEST_F(LidarEdge, ARecordingThatFailsDoesNotEndTheStream) {
              {"robots", {{{"name", "r1"}, {"port", port}, {"record", folder + "/%05d.mcap"}}}}});
   const auto consumer = Consumer("fleet.r1.lidar.lidar");
   const auto robot = Robot(port);
-  ASSERT_TRUE(Eventually([&] { return Metric("lidar_edge_record_failures", "r1") == 1; }));
+  ASSERT_TRUE(
+      Eventually([&] { return Metric("lidar_edge_record_failures", "r1").value_or(0) >= 1; }));
   EXPECT_TRUE(consumer->WaitForBuffers(8));
   std::filesystem::create_directory(folder);
   EXPECT_TRUE(Eventually([&] { return Metric("lidar_mcapsink_messages", "r1").value_or(0) > 0; }));
@@ -338,7 +339,8 @@ TEST_F(LidarEdge, RobotsOnOnePortAreToldApartBySsrcAndKey) {
   EXPECT_TRUE(first->WaitForBuffers(before + 8));
   EXPECT_EQ(Metric("lidar_edge_sessions", "r2"), 1);
   EXPECT_EQ(Metric("lidar_edge_failures", "r2"), 0);
-  EXPECT_GT(r1->stat("feedback-accepted"), 0U) << "reports come back from the port";
+  EXPECT_TRUE(Eventually([&] { return r1->stat("feedback-accepted") > 0; }))
+      << "reports come back from the port";
   const auto answer = Metrics();
   ASSERT_TRUE(answer);
   const auto at = answer->find("\nlidar_edge_stray_datagrams ");

@@ -136,7 +136,8 @@ TEST_F(NatsErrors, ABufferOfAnotherSizeThanItsCapsSayIsCounted) {
 TEST_F(NatsErrors, CapsAndBuffersThatTheServerDoesNotTakeAreTold) {
   std::ofstream(server_.folder() + "/conf") << "max_payload: 100\n";
   server_.Start({"-c", server_.folder() + "/conf"});
-  NatsPipeline sender(kQuick + "num-buffers=8" + kSee + "! natssink name=n sync=false" + At());
+  NatsPipeline sender(kQuick + "num-buffers=8" + kSee + "! natssink name=n sync=false" +
+                      kPatientDrain + At());
   sender.Play();
   for (const std::string what : {"The caps are", "A buffer is"})
     EXPECT_NE(sender.WaitForWarning(what + " larger than the server allows"), "");
@@ -149,14 +150,15 @@ TEST_F(NatsErrors, CapsAndBuffersThatTheServerDoesNotTakeAreTold) {
 TEST_F(NatsErrors, AStreamWhoseBuffersAllExceedTheBufferSizeEndsWithAnError) {
   server_.Start();
   NatsPipeline sender(kQuick + "slices-per-scan=1 num-buffers=8" + kSee +
-                      "! natssink name=n sync=false buffer-size=65536" + At());
+                      "! natssink name=n sync=false buffer-size=65536" + kPatientDrain + At());
   sender.Play();
   EXPECT_EQ(sender.WaitForEnd(),
             "None of 8 messages reached the NATS server: they exceed its max_payload, or "
             "buffer-size.");
   EXPECT_EQ(sender.stat("messages-dropped"), 8U);
   NatsPipeline patient(kQuick + "slices-per-scan=1 num-buffers=8" + kSee +
-                       "! natssink name=n sync=false buffer-size=65536 keep-trying=true" + At());
+                       "! natssink name=n sync=false buffer-size=65536 keep-trying=true" +
+                       kPatientDrain + At());
   patient.Play();
   EXPECT_EQ(patient.WaitForEnd(), "");
   EXPECT_EQ(patient.stat("messages-dropped"), 8U);
@@ -165,7 +167,7 @@ TEST_F(NatsErrors, AStreamWhoseBuffersAllExceedTheBufferSizeEndsWithAnError) {
 TEST_F(NatsErrors, AnEmptyStreamIsNoError) {
   server_.Start();
   NatsPipeline sender(kQuick + "num-buffers=0 ! lidarenc" + kSee + "! natssink name=n sync=false" +
-                      At());
+                      kPatientDrain + At());
   sender.Play();
   EXPECT_EQ(sender.WaitForEnd(), "");
 }
