@@ -127,7 +127,7 @@ TEST(OusterMulticast, ReachesEveryReceiverOfTheGroup) {
   ASSERT_TRUE(other) << raw->message;
   ASSERT_TRUE(gst::JoinMulticast(other.get(), group, "lo", &raw)) << raw->message;
   g_socket_set_blocking(other.get(), TRUE);
-  g_socket_set_timeout(other.get(), 5);
+  g_socket_set_timeout(other.get(), kPatience.count());
   std::vector<gchar> packet(65536);
   const gssize size = g_socket_receive(other.get(), packet.data(), packet.size(), nullptr, nullptr);
   EXPECT_EQ(size, static_cast<gssize>(32 + 16 * (12 + 32 * 12) + 32));

@@ -20,6 +20,7 @@ class OusterUdp : public ::testing::Test {
   Harness Play(const char* json, const char* more = "") {
     port_ = FreePort();
     const std::string launch = "ouster_src name=src lidar-port=" + std::to_string(port_) +
+                               " imu-port=" + std::to_string(FreePort()) +
                                " metadata=" + DataPath(json) + " " + more;
     Harness h(gst_harness_new_parse(launch.c_str()));
     gst_harness_use_systemclock(h.get());
