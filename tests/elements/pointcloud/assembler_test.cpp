@@ -11,6 +11,7 @@
 #include "tests/support/element_bus.h"
 #include "tests/support/element_stats.h"
 #include "tests/support/harness.h"
+#include "tests/support/patience.h"
 
 namespace lidar::gst {
 namespace {
@@ -491,7 +492,7 @@ class LiveAssembler : public Assembler {
 
 TEST_F(LiveAssembler, AScanLeavesAtItsDeadlineWithoutItsLastSlice) {
   for (guint i = 0; i < 3; ++i) Push(Slice(0, i));
-  ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h_.get(), 1, 10));
+  ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h_.get(), 1, test::kPatience.count()));
   // The deadline is the time of the first column, plus the duration of a scan, the latency of the
   // source, and max-wait.
   EXPECT_EQ(gst_test_clock_get_next_entry_time(GST_TEST_CLOCK(GST_ELEMENT_CLOCK(h_->element))),
@@ -538,14 +539,14 @@ TEST_F(Assembler, AScanFromBeforeTheClockRanLeavesAtItsDeadline) {
   ASSERT_TRUE(AwaitSleepOfTimer(h_->element));
   test::UseTestClock(h_.get());
   gst_element_set_state(h_->element, GST_STATE_PLAYING);
-  ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h_.get(), 1, 10));
+  ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h_.get(), 1, test::kPatience.count()));
   ASSERT_TRUE(gst_harness_crank_single_clock_wait(h_.get()));
   EXPECT_EQ(ColumnsOf(Pull()), Columns({1, 2, 3, 0}));
 }
 
 TEST_F(LiveAssembler, AScanOfASenderThatStartedAgainHasItsOwnDeadline) {
   Push(Slice(40, 0));
-  ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h_.get(), 1, 10));
+  ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h_.get(), 1, test::kPatience.count()));
   Push(Slice(0, 0));
   EXPECT_EQ(MetaOf(Pull()).scan_id, 40U);
   EXPECT_TRUE(test::AwaitClockWait(h_.get(), test::kClockStart + (100 + 25 + 20) * GST_MSECOND));
@@ -587,7 +588,7 @@ TEST_F(LiveAssembler, SaysItIsLateByAScanAndTheWait) {
 
 TEST_F(LiveAssembler, StopsWhileAScanWaits) {
   Push(Slice(0, 0));
-  ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h_.get(), 1, 10));
+  ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h_.get(), 1, test::kPatience.count()));
   gst_element_set_state(h_->element, GST_STATE_NULL);
   EXPECT_EQ(Waiting(), 0U);
 }

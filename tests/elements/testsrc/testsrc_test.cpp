@@ -170,7 +170,7 @@ TEST(LidarTestSrc, ALiveSliceLeavesWhenItsLastColumnIsSampled) {
   test::UseTestClock(h.get());
   SetPlaying(h.get());
   for (guint i = 1; i <= 10; ++i) {
-    ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h.get(), 1, 10));
+    ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h.get(), 1, test::kPatience.count()));
     EXPECT_EQ(gst_test_clock_get_next_entry_time(GST_TEST_CLOCK(GST_ELEMENT_CLOCK(h->element))),
               test::kClockStart + i * 12'500'000);
     EXPECT_EQ(gst_harness_buffers_in_queue(h.get()), 0U);
@@ -198,7 +198,7 @@ TEST(LidarTestSrc, ALiveSourceSaysItIsLateByOneSlice) {
 /// Wakes the thread that waits for the clock, although its time has already passed. The test clock
 /// does not do this by itself.
 void ReleaseWaiter(const Harness& h) {
-  ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h.get(), 1, 10));
+  ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h.get(), 1, test::kPatience.count()));
   gst_clock_id_unref(
       gst_test_clock_process_next_clock_id(GST_TEST_CLOCK(GST_ELEMENT_CLOCK(h->element))));
 }
@@ -207,7 +207,7 @@ TEST(LidarTestSrc, ALiveSourceThatIsScansLateSkipsToThePresent) {
   const Harness h = Launch("is-live=true model=os1-32 mode=512x10");
   test::UseTestClock(h.get());
   SetPlaying(h.get());
-  ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h.get(), 1, 10));
+  ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h.get(), 1, test::kPatience.count()));
   gst_harness_set_time(h.get(), test::kClockStart + 1'030 * GST_MSECOND);
   ReleaseWaiter(h);
   EXPECT_EQ(SliceOf(Pull(h)).scan_id, 0U);  // the source waited with this slice
@@ -258,7 +258,7 @@ TEST(LidarTestSrc, ALiveSourceStopsWhileItWaits) {
     const Harness h = Launch("is-live=true model=os1-32 mode=512x10");
     test::UseTestClock(h.get());
     SetPlaying(h.get());
-    ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h.get(), 1, 10));
+    ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h.get(), 1, test::kPatience.count()));
   }
 }
 
@@ -504,7 +504,7 @@ TEST(LidarTestSrc, ALiveImuHasTheClockOfTheClouds) {
   const LiveImu live;
   const Harness& h = live.harness();
   for (std::size_t i = 1; i <= 10; ++i) {
-    ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h.get(), 1, 10));
+    ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h.get(), 1, test::kPatience.count()));
     EXPECT_EQ(live.samples().size(), i - 1) << "samples leave with the slice of their sweep";
     ASSERT_TRUE(gst_harness_crank_single_clock_wait(h.get()));
     const BufferPtr cloud = Pull(h);
@@ -516,7 +516,7 @@ TEST(LidarTestSrc, ALiveImuHasTheClockOfTheClouds) {
 TEST(LidarTestSrc, AnImuSkipsWithTheClouds) {
   const LiveImu live;
   const Harness& h = live.harness();
-  ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h.get(), 1, 10));
+  ASSERT_TRUE(gst_harness_wait_for_clock_id_waits(h.get(), 1, test::kPatience.count()));
   gst_harness_set_time(h.get(), test::kClockStart + 1'030 * GST_MSECOND);
   ReleaseWaiter(h);
   Pull(h);  // the source waited with this slice

@@ -274,8 +274,8 @@ TEST(FoxgloveSink, SendsThePosesThatOdometryPutOnClouds) {
     gst_harness_push(sink.harness(), buffer);
   };
   push();
+  EXPECT_EQ(peer.Next().subscription, 1U);
   peer.Subscribe("/tf", 2);
-  peer.received.clear();
   push();
   const Received transform = peer.Next();  // the transform comes before its cloud
   ASSERT_EQ(transform.subscription, 2U);
