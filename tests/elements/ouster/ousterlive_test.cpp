@@ -161,7 +161,7 @@ TEST(OusterLive, DamagedPacketsAreToldByTheirCrc) {
   EXPECT_TRUE(receiver.PullUntil(
       [&](GstBuffer*) { return refused() + stat("dropped-by-kernel") >= corrupted; }));
   EXPECT_LE(refused(), corrupted);
-  EXPECT_GT(stat("packets-damaged"), 0U);
+  EXPECT_GE(stat("packets-damaged") * 10, refused() * 9);
 }
 
 guint64 Reconnects(Receiver& receiver) { return StatOf(receiver.source(), "reconnects"); }

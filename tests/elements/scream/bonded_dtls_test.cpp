@@ -50,7 +50,7 @@ TEST_P(BondedDtls, GoesOnOverOneLinkWhereTheOtherDies) {
   });
   // On a busy machine some packets of the dead link may be too old to be sent again over the other
   // link.
-  EXPECT_LT(PacketsOf(out.get()), receiver.passed + TooOld(out.get()) + kAfterDeath / 2);
+  EXPECT_LT(PacketsOf(out.get()) - receiver.passed, kAfterDeath / 2);
   EXPECT_EQ(Stats(out.get())["dtls-handshakes"], 1U);
   EXPECT_EQ(Stats(in.get())["dtls-handshakes"], 1U);
   EXPECT_EQ(Stats(out.get())["srtp-refused"], 0U);

@@ -107,7 +107,7 @@ inline guint64 TooOld(GstElement* sink) {
 /// Expects that all of the `count` packets have arrived, except a few that were too old.
 inline void ExpectAllPassed(const BondReceiver& receiver, Pipeline& sender, guint64 count) {
   const guint64 too_old = TooOld(sender.Get("out").get());
-  EXPECT_LE(too_old, count / 2);
+  EXPECT_LE(too_old, count / 10);
   EXPECT_LE(receiver.passed, count);
   EXPECT_GE(receiver.passed + too_old, count);
 }
