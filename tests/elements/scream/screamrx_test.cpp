@@ -300,16 +300,16 @@ TEST_F(ScreamRx, BelievesTheSenderWhoseSlicesAreWholeOverOneWhoSendsOften) {
 
 TEST_F(ScreamRx, DropsARecordingThatIsOlderThanAskedFor) {
   for (const bool asked : {false, true}) {
-    if (asked) g_object_set(element, "max-age", guint64{2 * GST_SECOND}, nullptr);
+    constexpr std::uint64_t kHour = 3600 * GST_SECOND;
+    if (asked) g_object_set(element, "max-age", guint64{2 * kHour}, nullptr);
     Start();
     gst_harness_set_src_caps_str(rtp.get(),
                                  "application/x-rtp, media=(string)application, payload=(int)96, "
                                  "clock-rate=(int)90000, encoding-name=(string)X-LIDAR-DRACO");
     const auto now = static_cast<std::uint64_t>(g_get_real_time()) * 1000;
-    constexpr std::uint64_t kSecond = GST_SECOND;
     Rtp r;
     for (const std::uint64_t captured :
-         {now - 3600 * kSecond, now - 3 * kSecond, now + 3 * kSecond, now - kSecond / 10}) {
+         {now - 3600 * kHour, now - 3 * kHour, now + 3 * kHour, now - kHour / 10}) {
       ++r.seq;
       r.payload = WholeSlice(lidar::rtp::ToNtp(captured));
       ASSERT_EQ(Push(r), GST_FLOW_OK);
@@ -378,7 +378,7 @@ TEST_F(ScreamRx, JudgesTheAgeOfNothingThatIsLidarNoMore) {
 }
 
 TEST_F(ScreamRx, GoesOnWithThePeerWhereSomebodyElseSendsARecordingOfItsSsrc) {
-  g_object_set(element, "max-age", guint64{2 * GST_SECOND}, nullptr);
+  g_object_set(element, "max-age", guint64{1800 * GST_SECOND}, nullptr);
   Start();
   gst_harness_set_src_caps_str(rtp.get(),
                                "application/x-rtp, media=(string)application, payload=(int)96, "
