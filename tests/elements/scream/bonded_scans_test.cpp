@@ -63,7 +63,8 @@ TEST_P(BondedScans, ComeOnceAndWholeOverTwoLinks) {
   const ElementPtr is_built(gst_element_factory_make(coding.decoder, nullptr));
   if (!is_built) GTEST_SKIP() << coding.decoder << " is not built";
   Pipeline receiver(
-      std::string("screamsrc name=in port=0 ! rtplidardepay ! identity name=seen ! ") +
+      std::string("screamsrc name=in port=0 ! rtplidardepay max-reorder-time=5000000000 "
+                  "! identity name=seen ! ") +
       coding.decoder + " name=decoder ! fakesink sync=false");
   const PassingSlices got(receiver.Get("seen"));
   receiver.Play();

@@ -276,7 +276,8 @@ TEST(Bonding, WhatIsLateOnAllLinksLeavesTheirQueuesAndNewerPacketsGoOn) {
 
 TEST(Bonding, CarriesSlicesThatReferToOnesWhichArrivedByAnyLink) {
   Pipeline receiver(
-      "screamsrc name=in port=0 ! rtplidardepay ! lidardec name=decoder ! fakesink sync=false");
+      "screamsrc name=in port=0 ! rtplidardepay max-reorder-time=5000000000 "
+      "! lidardec name=decoder ! fakesink sync=false");
   receiver.Play();
   const std::string to = "127.0.0.1:" + BoundPort(receiver);
   Pipeline sender(
