@@ -331,12 +331,14 @@ void LiveSession::HandlePacket(const ReceivedDatagram& d, Time now, Time utc_now
   }
 }
 
-/// Checks whether the sensor has been silent for too long. If the session cannot wait for the
-/// sensor, posts an error and returns false.
-bool LiveSession::CheckSilence() {
+/// Checks whether the sensor had been silent for too long at `now_us`, a time of Now() before the
+/// last call of udp_.Receive(). A later time would count a stop of this thread as silence, although
+/// packets wait in the socket. If the session cannot wait for the sensor, posts an error and
+/// returns false.
+bool LiveSession::CheckSilence(gint64 now_us) {
   if (stream() == nullptr) return true;
   const bool never = stream()->batcher().stats().packets == 0 && !lost_once_;
-  const gint64 silence = Now() - last_packet_us_;
+  const gint64 silence = now_us - last_packet_us_;
   if (silence < (never ? kFirstSilenceUs : kSilenceUs)) return true;
   const std::string where =
       destination_.empty() ? std::string() : "; the sensor sends to " + destination_;
@@ -369,6 +371,7 @@ GstFlowReturn LiveSession::Poll() {
   }
   const Time now = ToTime(RunningTime());
   const Time utc_now = UtcNow();
+  const gint64 now_us = Now();
   const auto outcome =
       udp_.Receive(kCheckNs, [&](const ReceivedDatagram& d) { HandlePacket(d, now, utc_now); });
   switch (outcome) {
@@ -384,7 +387,7 @@ GstFlowReturn LiveSession::Poll() {
     case UdpFeed::Outcome::kTimeout:
       break;
   }
-  return CheckSilence() ? GST_FLOW_OK : GST_FLOW_ERROR;
+  return CheckSilence(now_us) ? GST_FLOW_OK : GST_FLOW_ERROR;
 }
 
 }  // namespace lidar::gst

@@ -35,7 +35,7 @@ class LiveSession : public Session {
   void HandlePacket(const ReceivedDatagram& datagram, Time now, Time utc_now);
   void HandleNewInitId(ByteView payload, const ouster::Arrival& arrival);
   void HandleWrongSize(gsize size);
-  bool CheckSilence();
+  bool CheckSilence(gint64 now_us);
   bool WaitWhileSwitchedOff();
   void LeavePauseBehind();
   void SetConnected(bool connected, const std::string& reason);
