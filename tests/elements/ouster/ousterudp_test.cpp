@@ -95,38 +95,6 @@ TEST_F(OusterUdp, GoesOnWithASensorThatRestarted) {
   EXPECT_GE(GST_BUFFER_PTS(after.get()), GST_BUFFER_PTS(before.get()));
 }
 
-TEST_F(OusterUdp, PacketsOfAnotherSizeAreCountedAndWarnedOf) {
-  const Harness h = Play(kJson);
-  const gst::ElementPtr source(gst_bin_get_by_name(GST_BIN(h->element), "src"));
-  const ElementBus bus(h->element);
-  for (int i = 0; i < 6; ++i) sender_->Send(std::vector<std::uint8_t>(6464));
-  const gst::MessagePtr warning = bus.Wait(GST_MESSAGE_WARNING);
-  ASSERT_TRUE(warning);
-  const std::string text = TextOf(warning.get());
-  EXPECT_NE(text.find("Packets of 6464 bytes arrive, but the metadata describes packets of"),
-            std::string::npos)
-      << text;
-  EXPECT_NE(text.find("is the metadata (serial number"), std::string::npos) << text;
-  for (std::size_t i = 0; i < 8; ++i) sender_->Send(packets_[i]);
-  const BufferPtr buffer(gst_harness_pull(h.get()));
-  EXPECT_TRUE(buffer);
-  EXPECT_EQ(StatOf(source.get(), "packets-wrong-size"), 6U);
-}
-
-TEST_F(OusterUdp, PacketsOfAnotherSizeBetweenGoodOnesAreOnlyCounted) {
-  const Harness h = Play(kJson);
-  const gst::ElementPtr source(gst_bin_get_by_name(GST_BIN(h->element), "src"));
-  const ElementBus bus(h->element);
-  constexpr std::size_t kRounds = 16;
-  for (std::size_t i = 0; i < kRounds; ++i) {
-    sender_->Send(std::vector<std::uint8_t>(6464));
-    sender_->Send(packets_[i]);
-    ASSERT_TRUE(Eventually([&] { return StatOf(source.get(), "packets") == i + 1; }));
-  }
-  EXPECT_EQ(StatOf(source.get(), "packets-wrong-size"), kRounds);
-  EXPECT_EQ(bus.Texts(GST_MESSAGE_WARNING), std::vector<std::string>());
-}
-
 TEST_F(OusterUdp, ASmallReceiveBufferIsWarnedOfWithTheRemedy) {
   // The size is more than the kernel allows even for root.
   const std::string launch =
@@ -182,9 +150,9 @@ void called_clock_class_init(CalledClockClass* klass) {
 }
 
 /// A fixture with a sensor whose silence is measured by a test clock.
-class OusterSilence : public OusterUdp {
+class OusterOnTestClock : public OusterUdp {
  protected:
-  OusterSilence() : imu_(imu_port_) {
+  OusterOnTestClock() : imu_(imu_port_) {
     port_ = FreePort();
     h_.reset(gst_harness_new_parse(("ouster_src name=src lidar-port=" + std::to_string(port_) +
                                     " imu-port=" + std::to_string(imu_port_) +
@@ -240,6 +208,33 @@ class OusterSilence : public OusterUdp {
   std::optional<ElementBus> bus_;
   UdpSender imu_;
 };
+
+TEST_F(OusterOnTestClock, PacketsOfAnotherSizeAreCountedAndWarnedOf) {
+  for (int i = 0; i < 6; ++i) sender_->Send(std::vector<std::uint8_t>(6464));
+  const gst::MessagePtr warning = bus_->Wait(GST_MESSAGE_WARNING);
+  ASSERT_TRUE(warning);
+  const std::string text = TextOf(warning.get());
+  EXPECT_NE(text.find("Packets of 6464 bytes arrive, but the metadata describes packets of"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find("is the metadata (serial number"), std::string::npos) << text;
+  Send(kPacketsOfSlice);
+  const BufferPtr buffer(gst_harness_pull(h_.get()));
+  EXPECT_TRUE(buffer);
+  EXPECT_EQ(StatOf(source_.get(), "packets-wrong-size"), 6U);
+}
+
+TEST_F(OusterOnTestClock, PacketsOfAnotherSizeBetweenGoodOnesAreOnlyCounted) {
+  constexpr std::size_t kRounds = 16;
+  for (std::size_t i = 0; i < kRounds; ++i) {
+    sender_->Send(std::vector<std::uint8_t>(6464));
+    Send(1);
+  }
+  EXPECT_EQ(StatOf(source_.get(), "packets-wrong-size"), kRounds);
+  EXPECT_EQ(bus_->Texts(GST_MESSAGE_WARNING), std::vector<std::string>());
+}
+
+using OusterSilence = OusterOnTestClock;
 
 TEST_F(OusterSilence, IsReportedAfterThreeSecondsAtTheStartAndOneLaterOn) {
   Pass(2'900 * GST_MSECOND);
