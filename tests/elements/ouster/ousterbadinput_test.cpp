@@ -36,7 +36,7 @@ Ending RunFile(const std::string& pcap, const std::string& metadata) {
 }
 
 struct BadInput {
-  const char* properties;  // @ is replaced by the folder of the test data
+  std::string properties;  // @ is replaced by the folder of the test data
   const char* error;       // part of the expected message
 };
 class OusterBadInput : public ::testing::TestWithParam<BadInput> {};
@@ -77,8 +77,9 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"hostname=127.0.0.1:1 azimuth-window=-1,9", "azimuth-window must be like"},
         BadInput{"hostname=127.0.0.1:1 azimuth-window=9,-1", "azimuth-window must be like"},
         BadInput{"hostname=127.0.0.1:1 azimuth-window=1,2,3", "azimuth-window must be like"},
-        BadInput{"metadata=@crc_test.json lidar-port=47503 multicast-group=239.1.1.1 "
-                 "multicast-iface=nope0",
+        BadInput{"metadata=@crc_test.json multicast-group=239.1.1.1 multicast-iface=nope0 "
+                 "lidar-port=" +
+                     std::to_string(FreePort()),
                  "no network interface \"nope0\""},
         BadInput{"location=@crc_test.pcap min-range=3 max-range=3", "max-range"},
         BadInput{"location=@crc_test.pcap min-range=9 max-range=3", "max-range"}));
