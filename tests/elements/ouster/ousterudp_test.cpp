@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Tests of ouster_src that receives from sockets.
 #include <atomic>
+#include <cstring>
+#include <fstream>
 #include <functional>
+#include <set>
 
 #include "tests/elements/ouster/ouster_support.h"
 #include "tests/support/clock_wait.h"
@@ -54,6 +57,47 @@ TEST_F(OusterUdp, GivesASliceOnceItsLastPacketCame) {
   }
   EXPECT_EQ(gst_harness_query_latency(h.get()), 12500 * GST_USECOND);
   EXPECT_EQ(gst_harness_buffers_received(h.get()), 2U);
+}
+
+/// Sends slices whose times are those of now. The element uses these times, except those of a slice
+/// that arrives a second later, because then the clock counts as not synchronised.
+TEST_F(OusterUdp, TheCaptureTimeOfASensorOnPtpIsTrueUtc) {
+  const TempFolder folder;
+  const std::string path = folder.path() + "/ptp.json";
+  std::string json = ReadFile(DataPath(kJson));
+  const std::string from = "\"base_pn\": \"\",";
+  json.replace(json.find(from), from.size(),
+               R"("config_params": {"timestamp_mode": "TIME_FROM_PTP_1588"},)");
+  std::ofstream(path) << json;
+  const Harness h = Play(kJson, ("metadata=" + path).c_str());
+  const gst::ElementPtr source(gst_bin_get_by_name(GST_BIN(h->element), "src"));
+  const auto& format = metadata_.format;
+  const auto time_at = [&](std::vector<std::uint8_t>& packet, std::uint32_t column) {
+    return &packet[format.packet_header_size() + column * format.column_size()];
+  };
+  std::set<guint64> sent;
+  bool is_utc = false;
+  for (std::size_t first = 0; first < packets_.size() && !is_utc; first += 8) {
+    const guint64 utc = static_cast<guint64>(g_get_real_time()) * GST_USECOND;
+    guint64 shift = 0;
+    for (std::size_t i = first; i < first + 8; ++i) {
+      auto packet = packets_[i];
+      for (std::uint32_t column = 0; column < format.columns_per_packet; ++column) {
+        guint64 time = 0;
+        std::memcpy(&time, time_at(packet, column), sizeof time);
+        if (i == first && column == 0) shift = utc + 37 * GST_SECOND - time;
+        time += shift;
+        std::memcpy(time_at(packet, column), &time, sizeof time);
+      }
+      sender_->Send(packet);
+    }
+    sent.insert(utc);
+    const BufferPtr buffer(gst_harness_pull(h.get()));
+    ASSERT_TRUE(buffer);
+    is_utc = sent.count(gst_lidar_buffer_get_capture_time(buffer.get())) == 1 &&
+             StatOf(source.get(), "clock-synchronised") == 1;
+  }
+  EXPECT_TRUE(is_utc);
 }
 
 TEST_F(OusterUdp, CountsWhatDoesNotFitAndGoesOn) {
