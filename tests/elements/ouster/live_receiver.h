@@ -6,6 +6,7 @@
 #include <string>
 
 #include "tests/elements/ouster/ouster_support.h"
+#include "tests/support/clock_wait.h"
 #include "tests/support/patience.h"
 
 namespace lidar::test {
@@ -19,7 +20,9 @@ class Receiver {
     guint16 lidar;
     guint16 imu;
   };
-  Receiver(const std::string& host, const std::string& properties, Ports ports)
+  enum class Clock { kSystem, kTest };
+  Receiver(const std::string& host, const std::string& properties, Ports ports,
+           Clock clock = Clock::kSystem)
       : port_(ports.lidar) {
     const std::string launch = "ouster_src name=src hostname=" + host +
                                " imu-port=" + std::to_string(ports.imu) +
@@ -27,10 +30,17 @@ class Receiver {
     harness_.reset(gst_harness_new_parse(launch.c_str()));
     source_.reset(gst_bin_get_by_name(GST_BIN(harness_->element), "src"));
     bus_.emplace(harness_->element);
-    gst_harness_use_systemclock(harness_.get());
+    if (clock == Clock::kTest) {
+      UseTestClock(harness_.get());
+      Pass(3600 * GST_SECOND);  // later than running time 0, because earlier packets are dropped
+    } else {
+      gst_harness_use_systemclock(harness_.get());
+    }
     SetPlaying(harness_.get());
   }
 
+  /// Lets time pass on the test clock.
+  void Pass(GstClockTime time) { gst_harness_set_time(harness_.get(), now_ += time); }
   void SetState(GstState state) { gst_element_set_state(harness_->element, state); }
   /// Returns the next buffer. Returns null if none arrives in time or if the element has ended the
   /// stream, for example after an error.
@@ -68,6 +78,18 @@ class Receiver {
     } while ((is != FALSE) != connected);
     return true;
   }
+  /// Lets time pass on the test clock until the element posts that the sensor is disconnected.
+  bool PassUntilDisconnected() {
+    return Eventually([this] {
+      Pass(GST_SECOND);
+      const gst::MessagePtr message = bus_->Pop(GST_MESSAGE_ELEMENT);
+      gboolean is = TRUE;
+      return message && gst_message_has_name(message.get(), "ouster-connection-changed") &&
+             gst_structure_get_boolean(gst_message_get_structure(message.get()), "connected",
+                                       &is) &&
+             is == FALSE;
+    });
+  }
   /// Waits until the element has posted that its latency changed. Returns false if that takes too
   /// long.
   bool AwaitLatency() { return bus_->Wait(GST_MESSAGE_LATENCY) != nullptr; }
@@ -96,6 +118,7 @@ class Receiver {
   }
 
   guint16 port_;
+  GstClockTime now_ = kClockStart;
   Harness harness_;
   gst::ElementPtr source_;
   std::optional<ElementBus> bus_;

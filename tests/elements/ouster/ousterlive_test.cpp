@@ -168,11 +168,14 @@ guint64 Reconnects(Receiver& receiver) { return StatOf(receiver.source(), "recon
 
 TEST(OusterLive, ASensorThatFellSilentIsWaitedFor) {
   SoftwareSensor sensor({});
-  Receiver receiver(sensor.host(), "udp-dest=@auto");
+  Receiver receiver(sensor.host(), "udp-dest=@auto", {FreePort(), FreePort()},
+                    Receiver::Clock::kTest);
   ASSERT_TRUE(receiver.AwaitConnected(true));
   for (const guint times : {1U, 2U}) {
+    const auto silenced = [&] { return sensor.counts().silenced; };
     sensor.Fault({{"silent", true}});
-    ASSERT_TRUE(receiver.AwaitConnected(false));
+    ASSERT_TRUE(Eventually([&, before = silenced()] { return silenced() > before; }));
+    ASSERT_TRUE(receiver.PassUntilDisconnected());
     receiver.Drain();
     EXPECT_EQ(Reconnects(receiver), times - 1);
     sensor.Fault({{"silent", false}});

@@ -168,9 +168,7 @@ class ChangingAnswers {
   enum Answer { kWhole, kSwitchedOff };
   void Say(Answer answer) { answer_ = answer; }
   std::string host() const { return server_.host(); }
-  void SendLidar() {
-    for (const auto& packet : packets_) sender_.Send(packet);
-  }
+  void SendLidar() { sender_.Send(packet_); }
   /// Sends four packets of another size. After such packets the element sends a request to the API.
   void SendWrongSizes() {
     for (int i = 0; i < 4; ++i) sender_.Send(std::vector<std::uint8_t>(1'000));
@@ -181,15 +179,16 @@ class ChangingAnswers {
   std::atomic<int> answer_{kWhole};
   const HostileServer server_{[this](const Exchange& e) { e.Answer(texts_[answer_]); }};
   UdpSender sender_;
-  const std::vector<std::vector<std::uint8_t>> packets_ =
-      LoadPackets(kThreeScans, LoadMetadata(kThreeScansMetadata));
+  const std::vector<std::uint8_t> packet_ =
+      LoadPackets(kThreeScans, LoadMetadata(kThreeScansMetadata)).front();
 };
 
 TEST(OusterAnswers, OfASensorThatWasSwitchedOffAreAnErrorOnlyWithoutReconnect) {
   for (const bool reconnect : {true, false}) {
     const Receiver::Ports ports{FreePort(), FreePort()};
     ChangingAnswers sensor(ports);
-    Receiver receiver(sensor.host(), reconnect ? "" : "reconnect=false", ports);
+    Receiver receiver(sensor.host(), reconnect ? "" : "reconnect=false", ports,
+                      Receiver::Clock::kTest);
     ASSERT_TRUE(receiver.Await("ouster-metadata-changed"));
     sensor.SendLidar();
     ASSERT_TRUE(receiver.AwaitConnected(true));
