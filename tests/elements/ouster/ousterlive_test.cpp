@@ -313,7 +313,8 @@ TEST(OusterLive, APauseIsNoLossAndLeavesNothingOldBehind) {
     EXPECT_GT(gst_lidar_buffer_get_capture_time(buffer.get()), resumed - 200 * GST_MSECOND) << i;
   }
   EXPECT_EQ(StatOf(receiver.source(), "packets-lost"), lost);
-  EXPECT_EQ(Reconnects(receiver), 0U);
+  // If the machine stops the sensor for a second, the sensor is silent, and then its clock jumps.
+  EXPECT_TRUE(Reconnects(receiver) == 0 || StatOf(receiver.source(), "clock-jumps") > 0);
 }
 
 TEST(OusterLive, WaitsForASensorThatIsSwitchedOffForAWhile) {
