@@ -5,6 +5,7 @@
 #include "gst/net/datagram.h"
 #include "tests/elements/ecnudp/ecnudp_support.h"
 #include "tests/support/element_bus.h"
+#include "tests/support/free_ports.h"
 
 namespace lidar::gst {
 namespace {
@@ -61,16 +62,15 @@ TEST(EcnUdpSockets, AGivenSocketStaysOpenWhereAsked) {
 /// socket.
 TEST(EcnUdpSockets, APeerThatDoesNotListenYetEndsNothing) {
   const auto socket = Bound();
-  auto peer = Bound();
   const Object<GSocketAddress> here(g_socket_get_local_address(socket.get(), nullptr));
-  const Object<GSocketAddress> there(g_socket_get_local_address(peer.get(), nullptr));
-  peer.reset();
+  const Object<GSocketAddress> there(
+      g_inet_socket_address_new_from_string("127.0.0.1", test::FreePort()));
   ASSERT_TRUE(g_socket_connect(socket.get(), there.get(), nullptr, nullptr));
   ASSERT_EQ(g_socket_send(socket.get(), "?", 1, nullptr, nullptr), 1);
   const Harness src(gst_harness_new_with_padnames("ecnudpsrc", nullptr, "src"));
   g_object_set(src->element, "socket", socket.get(), nullptr);
   SetPlaying(src.get());
-  peer = Bound(there.get());
+  const auto peer = Bound(there.get());
   ASSERT_EQ(g_socket_send_to(peer.get(), here.get(), "!", 1, nullptr, nullptr), 1);
   const BufferPtr got(gst_harness_pull(src.get()));
   ASSERT_TRUE(got);
