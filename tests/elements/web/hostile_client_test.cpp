@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "src/foxglove/websocket.h"
+#include "tests/elements/coders/stopped_clock.h"
 #include "tests/elements/web/many_files.h"
 #include "tests/elements/web/web_peer.h"
 #include "tests/support/patience.h"
@@ -140,9 +141,13 @@ float XOf(const std::string& frame) {
   return x;
 }
 
-TEST(SlowClient, GetsTheNewestAndHoldsUpNobody) {
+/// The sink closes a connection that reads nothing for 30 s, so the clock stands still.
+class SlowClient : public ::testing::Test {
+  const StoppedClock clock_;
+};
+
+TEST_F(SlowClient, GetsTheNewestAndHoldsUpNobody) {
   constexpr guint kColumns = 100'000;  // 1.6 MB for each cloud
-  // Few, because the sink closes a connection that reads nothing for 30 s.
   constexpr int kClouds = 16;
   Sink sink;
   sink.SetCloudCaps(kColumns);
@@ -170,7 +175,7 @@ TEST(SlowClient, GetsTheNewestAndHoldsUpNobody) {
   EXPECT_LE(sink.Stat("messages-dropped") + static_cast<guint64>(got), guint64{kClouds});
 }
 
-TEST(SlowClient, GetsNothingThatWaitedOnceItUnsubscribed) {
+TEST_F(SlowClient, GetsNothingThatWaitedOnceItUnsubscribed) {
   Sink sink;
   RawClient slow = StalledClient(&sink);
   slow.SendText(R"({"op":"unsubscribe","subscriptionIds":[1]})");
@@ -185,7 +190,7 @@ TEST(SlowClient, GetsNothingThatWaitedOnceItUnsubscribed) {
   EXPECT_EQ(slow.ReadFrame()[0], '{');
 }
 
-TEST(SlowClient, GetsNothingThatWaitedOnceItsTopicIsGone) {
+TEST_F(SlowClient, GetsNothingThatWaitedOnceItsTopicIsGone) {
   Sink sink;
   RawClient slow = StalledClient(&sink);
   gst_harness_set_src_caps_str(sink.harness(), "application/x-draco,geometry=xyz,alignment=slice");
@@ -200,7 +205,7 @@ TEST(SlowClient, GetsNothingThatWaitedOnceItsTopicIsGone) {
   EXPECT_EQ(slow.ReadFrame()[0], '{');
 }
 
-TEST(SlowClient, MissesWholeScansButNoSliceOfThoseThatItGets) {
+TEST_F(SlowClient, MissesWholeScansButNoSliceOfThoseThatItGets) {
   constexpr guint kColumns = 20'000;
   constexpr guint kSlices = 4;
   Sink sink;

@@ -4,6 +4,7 @@
 #include <libsoup/soup.h>
 
 #include <algorithm>
+#include <chrono>
 #include <deque>
 #include <functional>
 #include <map>
@@ -68,9 +69,9 @@ class Sink {
 
 /// Runs the default main context until `done` returns true. Returns false if that takes too long.
 inline bool WaitUntil(const std::function<bool()>& done) {
-  const gint64 until = g_get_monotonic_time() + kPatience_us;
+  const auto until = std::chrono::steady_clock::now() + kPatience;
   while (!done()) {
-    if (g_get_monotonic_time() > until) return false;
+    if (std::chrono::steady_clock::now() > until) return false;
     if (!g_main_context_iteration(nullptr, FALSE)) g_usleep(500);
   }
   return true;
