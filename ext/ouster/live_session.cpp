@@ -377,8 +377,7 @@ GstFlowReturn LiveSession::Poll() {
   switch (outcome) {
     case UdpFeed::Outcome::kWoken:
       udp_.ClearWake();
-      if (flushing_) return GST_FLOW_FLUSHING;
-      break;
+      return flushing_ ? GST_FLOW_FLUSHING : GST_FLOW_OK;
     case UdpFeed::Outcome::kError:
       GST_ELEMENT_ERROR(element(), RESOURCE, READ, ("Receiving failed: %s.", g_strerror(errno)),
                         (nullptr));
