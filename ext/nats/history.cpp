@@ -66,22 +66,33 @@ std::optional<gst::HistoryAnswer> History::Answer(const gst::HistoryQuestion& qu
   const std::lock_guard lock(mutex_);
   if (!Find()) return std::nullopt;
   gst::HistoryAnswer answer;
-  const auto first = First();
-  const auto last = Last();
-  if (!first || !last) return answer;
-  answer.from = first->captured;
-  answer.to = std::max(last->captured, first->captured);
-  if (question.most_bytes == 0) return answer;
+  const natsStatus status = Fill(question, &answer);
+  answer.unanswered = status != NATS_OK && status != NATS_NOT_FOUND;
+  return answer;
+}
+
+/// Returns NATS_NOT_FOUND if the stream has no such messages, and another error if the server does
+/// not answer.
+natsStatus History::Fill(const gst::HistoryQuestion& question, gst::HistoryAnswer* answer) {
+  Stored first;
+  Stored last;
+  natsStatus s = First(&first);
+  if (s == NATS_OK) s = Last(&last);
+  if (s != NATS_OK) return s;
+  answer->from = first.captured;
+  answer->to = std::max(last.captured, first.captured);
+  if (question.most_bytes == 0) return s;
   const bool has_time = GST_CLOCK_TIME_IS_VALID(question.time);
   // JetStream finds messages by the time at which the server stored them. A capture time may be
   // later than that time, because the robot's clock may be ahead of the server's clock.
-  const guint64 ahead = last->captured - std::min(last->captured, last->stored);
-  answer.position = has_time ? 0 : question.position;
-  Take(Fetch(has_time ? FromTime(question.time - std::min(question.time, ahead))
-                      : FromPosition(question.position),
-             kMostMessages, question.most_bytes),
-       &answer);
-  return answer;
+  const guint64 ahead = last.captured - std::min(last.captured, last.stored);
+  answer->position = has_time ? 0 : question.position;
+  std::vector<MessagePtr> messages;
+  s = Fetch(has_time ? FromTime(question.time - std::min(question.time, ahead))
+                     : FromPosition(question.position),
+            kMostMessages, question.most_bytes, &messages);
+  Take(messages, answer);
+  return s;
 }
 
 /// Connects to the server and finds the stream that keeps the subject, unless the stream's name is
@@ -106,32 +117,36 @@ bool History::Find() {
   return !stream_.empty();
 }
 
-std::optional<History::Stored> History::Last() {
+natsStatus History::Last(Stored* last) {
   natsMsg* raw = nullptr;
   jsErrCode code{};
   const natsStatus s =
       js_GetLastMsg(&raw, js_.get(), stream_.c_str(), subject_.c_str(), nullptr, &code);
   const MessagePtr message(raw);
-  if (s != NATS_OK) return std::nullopt;
+  if (s != NATS_OK) return s;
   const guint64 stored = StoredAt(natsMsg_GetTime(raw));
   const auto read = Read(raw);
-  return Stored{stored, read ? CapturedAt(read->buffer.get(), stored) : stored};
+  *last = {stored, read ? CapturedAt(read->buffer.get(), stored) : stored};
+  return s;
 }
 
-std::optional<History::Stored> History::First() {
-  const auto messages = Fetch(FromStart(), 1, 0);
-  if (messages.empty()) return std::nullopt;
+natsStatus History::First(Stored* first) {
+  std::vector<MessagePtr> messages;
+  natsStatus s = Fetch(FromStart(), 1, 0, &messages);
   jsMsgMetaData* raw = nullptr;
-  if (natsMsg_GetMetaData(&raw, messages.front().get()) != NATS_OK) return std::nullopt;
+  if (s == NATS_OK) s = natsMsg_GetMetaData(&raw, messages.front().get());
   const MetaDataPtr meta(raw);
+  if (s != NATS_OK) return s;
   const guint64 stored = StoredAt(meta->Timestamp);
   const auto read = Read(messages.front().get());
-  return Stored{stored, read ? CapturedAt(read->buffer.get(), stored) : stored};
+  *first = {stored, read ? CapturedAt(read->buffer.get(), stored) : stored};
+  return s;
 }
 
-/// Returns at most `most` messages with about `most_bytes` in total, but at least one message if
-/// there is any.
-std::vector<MessagePtr> History::Fetch(jsConsumerConfig start, int most, guint64 most_bytes) {
+/// Adds at most `most` messages with about `most_bytes` in total, but at least one message if it
+/// returns NATS_OK. Returns NATS_NOT_FOUND if there is no message.
+natsStatus History::Fetch(jsConsumerConfig start, int most, guint64 most_bytes,
+                          std::vector<MessagePtr>* messages) {
   jsSubOptions options;
   jsSubOptions_Init(&options);
   options.Stream = stream_.c_str();
@@ -141,10 +156,16 @@ std::vector<MessagePtr> History::Fetch(jsConsumerConfig start, int most, guint64
   options.Config.Replicas = 1;
   jsErrCode code{};
   natsSubscription* raw = nullptr;
-  if (js_PullSubscribe(&raw, js_.get(), subject_.c_str(), nullptr, nullptr, &options, &code) !=
-      NATS_OK)
-    return {};
+  natsStatus s =
+      js_PullSubscribe(&raw, js_.get(), subject_.c_str(), nullptr, nullptr, &options, &code);
+  if (s != NATS_OK) return s;
   const SubscriptionPtr subscription(raw, {connection_->get()});
+  // A request for messages times out if there are none, and if the server is slow.
+  jsConsumerInfo* raw_info = nullptr;
+  s = natsSubscription_GetConsumerInfo(&raw_info, raw, nullptr, &code);
+  const ConsumerInfoPtr info(raw_info);
+  if (s != NATS_OK) return s;
+  if (info->NumPending == 0) return NATS_NOT_FOUND;
   // The server would send nothing if the first message were larger than MaxBytes.
   const std::int64_t largest = 2 * natsConnection_GetMaxPayload(connection_->get());
   jsFetchRequest request;
@@ -153,12 +174,11 @@ std::vector<MessagePtr> History::Fetch(jsConsumerConfig start, int most, guint64
   request.MaxBytes = std::max(static_cast<std::int64_t>(most_bytes), largest);
   request.Expires = kRequestTimeoutMs * 1'000'000;
   request.NoWait = true;
-  Messages messages;
-  natsSubscription_FetchRequest(&messages.list, raw, &request);
-  std::vector<MessagePtr> out;
-  for (int i = 0; i < messages.list.Count; ++i)
-    out.emplace_back(std::exchange(messages.list.Msgs[i], nullptr));
-  return out;
+  Messages got;
+  s = natsSubscription_FetchRequest(&got.list, raw, &request);
+  for (int i = 0; i < got.list.Count; ++i)
+    messages->emplace_back(std::exchange(got.list.Msgs[i], nullptr));
+  return s;
 }
 
 void History::Take(const std::vector<MessagePtr>& messages, gst::HistoryAnswer* answer) {

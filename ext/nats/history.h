@@ -24,7 +24,7 @@ class History {
   History(ConnectionSettings connection, std::string subject, std::string stream);
 
   /// Returns nothing if no stream of the server keeps the subject, or if there is no connection to
-  /// the server.
+  /// the server. The answer is `unanswered` if the server does not answer a request.
   std::optional<gst::HistoryAnswer> Answer(const gst::HistoryQuestion& question);
 
  private:
@@ -33,9 +33,11 @@ class History {
     guint64 captured = 0;  // capture time, or `stored` if it is unknown
   };
   bool Find();
-  std::optional<Stored> Last();
-  std::optional<Stored> First();
-  std::vector<MessagePtr> Fetch(jsConsumerConfig start, int most, guint64 most_bytes);
+  natsStatus Last(Stored* last);
+  natsStatus First(Stored* first);
+  natsStatus Fetch(jsConsumerConfig start, int most, guint64 most_bytes,
+                   std::vector<MessagePtr>* messages);
+  natsStatus Fill(const gst::HistoryQuestion& question, gst::HistoryAnswer* answer);
   void Take(const std::vector<MessagePtr>& messages, gst::HistoryAnswer* answer);
   StreamFormat::Ptr FormatOf(const std::string& id);
 

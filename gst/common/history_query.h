@@ -30,6 +30,7 @@ struct HistoryAnswer {
   guint64 position = 0;            // `position` for the next question
   bool ended = true;               // true if no newer buffer is stored yet
   guint64 damaged = 0;             // number of buffers that were omitted
+  bool unanswered = false;         // the server did not answer, so the other values are wrong
 };
 
 constexpr const char* kHistoryQuery = "lidar-history";
@@ -58,7 +59,8 @@ inline void SetHistoryAnswer(GstQuery* query, const HistoryAnswer& answer) {
   GstStructure* s = gst_query_writable_structure(query);
   gst_structure_set(s, "from", G_TYPE_UINT64, answer.from, "to", G_TYPE_UINT64, answer.to,
                     "position", G_TYPE_UINT64, answer.position, "ended", G_TYPE_BOOLEAN,
-                    gboolean{answer.ended}, "damaged", G_TYPE_UINT64, answer.damaged, nullptr);
+                    gboolean{answer.ended}, "damaged", G_TYPE_UINT64, answer.damaged, "unanswered",
+                    G_TYPE_BOOLEAN, gboolean{answer.unanswered}, nullptr);
   GValue samples = G_VALUE_INIT;
   gst_value_list_init(&samples, static_cast<guint>(answer.samples.size()));
   for (const SamplePtr& sample : answer.samples) {
@@ -74,10 +76,13 @@ inline HistoryAnswer ParseHistoryAnswer(GstQuery* query) {
   const GstStructure* s = gst_query_get_structure(query);
   HistoryAnswer answer;
   gboolean ended = TRUE;
+  gboolean unanswered = FALSE;
   gst_structure_get(s, "from", G_TYPE_UINT64, &answer.from, "to", G_TYPE_UINT64, &answer.to,
                     "position", G_TYPE_UINT64, &answer.position, "ended", G_TYPE_BOOLEAN, &ended,
-                    "damaged", G_TYPE_UINT64, &answer.damaged, nullptr);
+                    "damaged", G_TYPE_UINT64, &answer.damaged, "unanswered", G_TYPE_BOOLEAN,
+                    &unanswered, nullptr);
   answer.ended = ended != FALSE;
+  answer.unanswered = unanswered != FALSE;
   const GValue* samples = gst_structure_get_value(s, "samples");
   const guint count = samples != nullptr ? gst_value_list_get_size(samples) : 0;
   for (guint i = 0; i < count; ++i)

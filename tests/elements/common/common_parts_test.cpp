@@ -262,6 +262,7 @@ TEST(Histories, AreAskedForAndAnsweredInOneQuery) {
     answer.position = 300;
     answer.ended = ended;
     answer.damaged = 400;
+    answer.unanswered = !ended;
     for (int i = 0; i < 2; ++i) {
       const BufferPtr buffer(gst_buffer_new());
       answer.samples.emplace_back(gst_sample_new(buffer.get(), nullptr, nullptr, nullptr));
@@ -273,6 +274,7 @@ TEST(Histories, AreAskedForAndAnsweredInOneQuery) {
     EXPECT_EQ(read.position, 300U);
     EXPECT_EQ(read.ended, ended);
     EXPECT_EQ(read.damaged, 400U);
+    EXPECT_EQ(read.unanswered, !ended);
     ASSERT_EQ(read.samples.size(), 2U);
     for (std::size_t i = 0; i < 2; ++i)
       EXPECT_EQ(gst_sample_get_buffer(read.samples[i].get()),
@@ -287,6 +289,7 @@ TEST(Histories, ThatWereNotAnsweredAreEmptyAndOtherQueriesAskForNone) {
   EXPECT_EQ(question->time, GST_CLOCK_TIME_NONE);
   const HistoryAnswer read = ParseHistoryAnswer(query.get());
   EXPECT_TRUE(read.ended);
+  EXPECT_FALSE(read.unanswered);
   EXPECT_TRUE(read.samples.empty());
   EXPECT_EQ(read.from + read.to + read.damaged, 0U);
   for (GstQuery* other :

@@ -405,7 +405,10 @@ void SourceCourse(Course& c) {
 /// Sends a history query to a source and notes the answer.
 void NotePast(Course& c, const gst::HistoryQuestion& question) {
   const gst::QueryPtr query = gst::NewHistoryQuery(question);
-  EXPECT_TRUE(Eventually([&] { return gst_pad_peer_query(c.harness()->sinkpad, query.get()); }));
+  EXPECT_TRUE(Eventually([&] {
+    return gst_pad_peer_query(c.harness()->sinkpad, query.get()) &&
+           !gst::ParseHistoryAnswer(query.get()).unanswered;
+  }));
   const gst::HistoryAnswer answer = gst::ParseHistoryAnswer(query.get());
   std::string line =
       Line("past from ", answer.from, " to ", answer.to, ", then ", answer.position,

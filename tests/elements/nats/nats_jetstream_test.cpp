@@ -85,8 +85,12 @@ std::vector<Kept> AskForHistory(const NatsPipeline& receiver, gst::HistoryQuesti
   std::vector<Kept> out;
   do {
     const gst::QueryPtr query = gst::NewHistoryQuery(question);
-    if (!Eventually([&] { return gst_pad_query(pad.get(), query.get()) != FALSE; })) break;
-    *last = gst::ParseHistoryAnswer(query.get());
+    if (!Eventually([&] {
+          if (!gst_pad_query(pad.get(), query.get())) return false;
+          *last = gst::ParseHistoryAnswer(query.get());
+          return !last->unanswered;
+        }))
+      break;
     for (const gst::SamplePtr& sample : last->samples)
       out.push_back(Keep(gst_sample_get_buffer(sample.get())));
     question.time = GST_CLOCK_TIME_NONE;
@@ -706,6 +710,21 @@ TEST_F(NatsJetStream, AReceiverNeedsTheRightsOfItsStreamAlone) {
   player.Stop();
   live.Stop();
   EXPECT_EQ(server_.Logged("Violation"), 0U);
+}
+
+TEST_F(NatsJetStream, ThePastDoesNotEndWhereTheServerDoesNotAnswer) {
+  const auto sent = PublishSlices(64, At(kBox));
+  NatsPipeline receiver("natssrc name=n" + At("subject=r1.front") + "! fakesink name=see");
+  receiver.Play();
+  gst::HistoryAnswer last;
+  ExpectSameStream(AskForHistory(receiver, {0, 0, 100'000}, &last), sent);
+  const gst::PadPtr pad(gst_element_get_static_pad(receiver.nats(), "src"));
+  const gst::QueryPtr query = gst::NewHistoryQuery({0, 0, 100'000});
+  server_.Freeze();
+  ASSERT_TRUE(gst_pad_query(pad.get(), query.get()));
+  EXPECT_TRUE(gst::ParseHistoryAnswer(query.get()).unanswered);
+  server_.Thaw();
+  ExpectSameStream(AskForHistory(receiver, {0, 0, 100'000}, &last), sent);
 }
 
 TEST_F(NatsJetStream, HasNoPastOfAStreamThatItDoesNotKeep) {
