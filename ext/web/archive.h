@@ -38,6 +38,9 @@ class Archive {
   /// Returns the next item, or nothing if there is none yet. Also returns nothing soon after
   /// Cancel().
   virtual std::optional<Item> Next() = 0;
+  /// Returns a text for users if the last Next() returned nothing because of an error, or an empty
+  /// text.
+  virtual std::string error() const { return ""; }
   /// Closes files and frees buffers. Seek() or GoOn() opens them again.
   virtual void Rest() = 0;
   /// Returns the number of parts that were skipped. Damaged items are not counted.

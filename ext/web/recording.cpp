@@ -91,6 +91,8 @@ void Recording::Read(std::uint64_t from_ns, Piece* piece) {
     slices.push_back(std::move(item->slice));
   }
   piece->damaged += archive_->damaged() - damaged;
+  if (piece->ended) piece->why = archive_->error();
+  if (!piece->why.empty()) piece->from_ns = piece->to_ns = 0;
   archive_->Rest();
   for (const auto& slice : viewer::WithReferences(slices, before))
     piece->slices.push_back(std::static_pointer_cast<const SliceMessage>(slice));

@@ -10,6 +10,7 @@ namespace lidar::web {
 namespace {
 
 constexpr guint64 kAnswer = 512U << 10;  // bytes
+constexpr const char* kNoAnswer = "the server that keeps it does not answer";
 
 /// Returns the pose of the buffer as a message, or null if the buffer has no pose.
 std::shared_ptr<SliceMessage> ReadPose(GstBuffer* buffer, std::uint64_t unix_ns,
@@ -41,11 +42,17 @@ bool UpstreamArchive::IsThere(const Ask& ask) {
   return ask && ask(query.get());
 }
 
+bool UpstreamArchive::Answers(GstQuery* query, gst::HistoryAnswer* answer) const {
+  if (!ask_(query)) return false;
+  *answer = gst::ParseHistoryAnswer(query);
+  return !answer->unanswered;
+}
+
 std::optional<Archive::Times> UpstreamArchive::Look(std::string* why) {
   const gst::QueryPtr query = gst::NewHistoryQuery({});
-  *why = "the server that keeps it does not answer";
-  if (!ask_(query.get())) return std::nullopt;
-  const gst::HistoryAnswer answer = gst::ParseHistoryAnswer(query.get());
+  *why = kNoAnswer;
+  gst::HistoryAnswer answer;
+  if (!Answers(query.get(), &answer)) return std::nullopt;
   *why = answer.to == 0 ? "it is empty" : "";
   if (answer.to == 0) return std::nullopt;
   return Times{answer.from, answer.to};
@@ -77,9 +84,11 @@ std::optional<Archive::Item> UpstreamArchive::Next() {
 
 void UpstreamArchive::Read() {
   const gst::QueryPtr query = gst::NewHistoryQuery(question_);
+  gst::HistoryAnswer answer;
   ended_ = true;
-  if (!ask_(query.get())) return;
-  const gst::HistoryAnswer answer = gst::ParseHistoryAnswer(query.get());
+  error_ = kNoAnswer;
+  if (!Answers(query.get(), &answer)) return;
+  error_.clear();
   damaged_ += answer.damaged;
   ended_ = answer.ended;
   question_ = {GST_CLOCK_TIME_NONE, answer.position, kAnswer};

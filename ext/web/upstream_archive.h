@@ -28,10 +28,12 @@ class UpstreamArchive final : public Archive {
   void Seek(std::uint64_t time_ns) override;
   void GoOn(std::uint64_t position) override;
   std::optional<Item> Next() override;
+  std::string error() const override { return error_; }
   void Rest() override { items_.clear(); }
   std::uint64_t damaged() const override { return damaged_; }
 
  private:
+  bool Answers(GstQuery* query, gst::HistoryAnswer* answer) const;
   void Read();
   void Take(GstSample* sample);
   bool IsOurs(GstCaps* caps);
@@ -42,6 +44,7 @@ class UpstreamArchive final : public Archive {
   gst::HistoryQuestion question_;
   std::uint64_t from_ns_ = 0;  // time of the last Seek(); 0 after GoOn()
   bool ended_ = true;
+  std::string error_;
   std::deque<Item> items_;
   std::uint64_t damaged_ = 0;
   gst::CapsPtr known_caps_;

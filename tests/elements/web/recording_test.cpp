@@ -597,6 +597,28 @@ TEST_F(Histories, WhoseServerIsGoneSaySo) {
   viewer.Draw();
 }
 
+TEST_F(Histories, WhoseServerStopsAnsweringSaySo) {
+  Push(kScanSlices);
+  bool is_slow = false;
+  web::Recording recording(std::make_unique<web::UpstreamArchive>(
+      [&](GstQuery* query) {
+        if (!is_slow || gst::ParseHistoryQuestion(query)->most_bytes == 0)
+          return gst_pad_query(edge_.sink.harness()->srcpad, query) != FALSE;
+        gst::HistoryAnswer slow;
+        slow.unanswered = true;
+        gst::SetHistoryAnswer(query, slow);
+        return true;
+      },
+      CapsOf(&edge_), "lidar"));
+  const auto whole = recording.Jump(kFirst_ns);
+  EXPECT_EQ(whole.why, "");
+  EXPECT_NE(whole.to_ns, 0U);
+  is_slow = true;
+  const auto late = recording.GoOn(whole.next);
+  EXPECT_EQ(late.why, "the server that keeps it does not answer");
+  EXPECT_EQ(late.to_ns, 0U);
+}
+
 /// If histories were still read for a subscription that was replaced, a viewer could fill the
 /// memory with requests, each for a new subscription.
 TEST_F(Histories, AreNotReadForASubscriptionThatAnotherReplaced) {
