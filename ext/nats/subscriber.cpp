@@ -188,13 +188,15 @@ natsStatus Subscriber::SubscribeStored(jsErrCode* code) {
 
 /// Checks if the stream was deleted and made again since the last call. If it was, the next message
 /// is the first message of the new stream, because the numbers of the old stream are invalid.
-void Subscriber::NoteStream() {
+natsStatus Subscriber::NoteStream() {
   jsStreamInfo* raw = nullptr;
-  js_GetStreamInfo(&raw, js_.get(), settings_.stream.c_str(), nullptr, nullptr);
+  const natsStatus s =
+      js_GetStreamInfo(&raw, js_.get(), settings_.stream.c_str(), nullptr, nullptr);
   const StreamInfoPtr info(raw);
-  if (!info) return;
+  if (s != NATS_OK) return s;
   const std::int64_t before = std::exchange(created_, info->Created);
   if (before != 0 && before != created_) next_ = 1;
+  return s;
 }
 
 /// Returns true if the server answers. If it does not answer, Renew() would otherwise wait for the
@@ -219,9 +221,9 @@ Subscriber::Event Subscriber::Renew() {
   configs_.reset();
   last_number_ = 0;
   dropped_ = 0;
-  if (!acknowledges()) NoteStream();
   jsErrCode code{};
-  const natsStatus status = SubscribeStored(&code);
+  natsStatus status = acknowledges() ? NATS_OK : NoteStream();
+  if (status != NATS_TIMEOUT) status = SubscribeStored(&code);
   if (status != NATS_OK) {
     messages_.reset();
     trouble_ = status == NATS_NO_RESPONDERS ? "the server has no JetStream" : ErrorText(status);

@@ -86,7 +86,7 @@ class Subscriber {
   natsStatus AddDurable(jsErrCode* code);
   void SetStart(jsConsumerConfig* config) const;
   bool Answers() const;
-  void NoteStream();
+  natsStatus NoteStream();
   Event NoteStored(Delivery* delivery);
   bool IsDone();
   void CountOverruns();

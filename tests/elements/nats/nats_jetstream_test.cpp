@@ -459,6 +459,33 @@ TEST_F(NatsJetStream, ASourceBeginsAnotherStreamOfTheSameNameAtItsFirstMessage) 
   ExpectSameStream({got.begin() + 80, got.end()}, sent);
 }
 
+TEST_F(NatsJetStream, ASourceThatIsNotToldOfItsStreamAsksAgain) {
+  const auto start = [this](const std::string& denied) {
+    std::ofstream(server_.folder() + "/conf")
+        << "authorization { users = [ { user: edge, password: pw }, { user: viewer, password: pw, "
+           "permissions: { publish: { deny: "
+        << denied << " } } } ] }";
+    server_.Start({"-c", server_.folder() + "/conf"});
+  };
+  start("none");
+  const std::string edge = "url=" + server_.url("nats", "edge:pw@") + " " + kBox;
+  PublishSlices(16, edge);
+  NatsPipeline receiver("natssrc name=n start-time=0 url=" + server_.url("nats", "viewer:pw@") +
+                        " " + kBox + " ! fakesink name=see sync=false");
+  receiver.Play();
+  ASSERT_TRUE(receiver.WaitForBuffers(16));
+  start("\"$JS.API.STREAM.INFO.box\"");  // such a request gets no answer
+  const NatsClient client(server_.url("nats", "edge:pw@"));
+  ASSERT_EQ(js_DeleteStream(client.js(), "box", nullptr, nullptr), NATS_OK);
+  const auto sent = PublishSlices(8, edge);
+  ASSERT_TRUE(Eventually([&] { return server_.Logged("STREAM.INFO.box") >= 2; }));
+  EXPECT_NE(receiver.WaitForWarning("JetStream delivers no messages"), "");
+  start("none");
+  ASSERT_TRUE(receiver.WaitForBuffers(24));
+  const auto got = receiver.buffers();
+  ExpectSameStream({got.begin() + 16, got.end()}, sent);
+}
+
 /// Replaces the source's own consumer by another one. The new consumer begins with the next message
 /// and counts its messages from 1.
 void ReplaceConsumer(const NatsClient& client) {
