@@ -351,7 +351,9 @@ TEST_F(LidarWorker, KnowsWhereToReadFromThoughTheServerHadAPause) {
   worker::Progress begin;
   begin.pose = {0, 0, 0, 0, 0, 0, 1};
   begin.stream = CreationOf("fleet");
-  begin.scan = begin.from = 2;  // the message after the caps
+  const auto numbers = NatsClient(server_.url()).NumbersOf("fleet", "fleet.r1.lidar.front");
+  ASSERT_FALSE(numbers.empty());
+  begin.scan = begin.from = numbers.front();
   worker::RobotPipeline pipeline(settings, "r1.front", begin.stream, begin);
   pipeline.SetEnd(Time::max());
   pipeline.Play();

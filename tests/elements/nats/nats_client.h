@@ -3,7 +3,9 @@
 #pragma once
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include "ext/nats/nats_ptr.h"
 #include "tests/support/patience.h"
@@ -43,6 +45,22 @@ class NatsClient {
     EXPECT_EQ(natsConnection_SubscribeSync(&raw, nc_, subject.c_str()), NATS_OK);
     EXPECT_EQ(natsConnection_FlushTimeout(nc_, kPatienceMs), NATS_OK);
     return nats::SubscriptionPtr(raw, {nc_});
+  }
+  /// Returns the numbers of the messages that `stream` has of `subject`. A natssink stores its caps
+  /// again each second, so the numbers of its messages may have gaps.
+  std::vector<std::uint64_t> NumbersOf(const std::string& stream,
+                                       const std::string& subject) const {
+    jsStreamInfo* raw_info = nullptr;
+    EXPECT_EQ(js_GetStreamInfo(&raw_info, js(), stream.c_str(), nullptr, nullptr), NATS_OK);
+    const nats::StreamInfoPtr info(raw_info);
+    std::vector<std::uint64_t> numbers;
+    for (std::uint64_t n = 1; info && n <= info->State.LastSeq; ++n) {
+      natsMsg* raw = nullptr;
+      EXPECT_EQ(js_GetMsg(&raw, js(), stream.c_str(), n, nullptr, nullptr), NATS_OK);
+      const nats::MessagePtr message(raw);
+      if (message && natsMsg_GetSubject(raw) == subject) numbers.push_back(n);
+    }
+    return numbers;
   }
 
  private:
