@@ -56,8 +56,16 @@ TEST_F(NatsStream, ALateJoinerHasItsCapsWithTheFirstMessage) {
   NatsPipeline sender(kLive + "! lidarenc" + kSee + "! natssink name=n" + At());
   sender.Play();
   ASSERT_TRUE(Eventually([&] { return sender.stat("messages") >= 10; }));
+  sender.Hold(true);
+  ASSERT_TRUE(Eventually([&] { return sender.holds() && sender.stat("messages-waiting") == 0; }));
+  const NatsClient other(server_.url());
+  const auto configs = other.Subscribe("lidar.config.*");
   NatsPipeline receiver("natssrc name=n" + At() + "! fakesink name=see sync=false");
   Listen(server_, &receiver);
+  natsMsg* config = nullptr;  // the sender's answer to the receiver
+  ASSERT_EQ(natsSubscription_NextMsg(&config, configs.get(), NatsClient::kPatienceMs), NATS_OK);
+  natsMsg_Destroy(config);
+  sender.Hold(false);
   ASSERT_TRUE(receiver.WaitForBuffers(8));
   EXPECT_EQ(receiver.caps(), sender.caps());
   EXPECT_EQ(receiver.stat("messages-without-caps"), 0U);
@@ -158,7 +166,11 @@ TEST_F(NatsStream, ServerKilledAndBackEveryLossIsCounted) {
   Listen(server_, &receiver);
   NatsPipeline sender(kLive + "! lidarenc" + kSee + "! natssink name=n buffer-size=65536 " +
                       kPatientDrain + At());
+  // The receiver cannot know what the sender drops before its first message.
+  sender.HoldFrom(1);
   sender.Play();
+  ASSERT_TRUE(receiver.WaitForBuffers(1));
+  sender.Hold(false);
   ASSERT_TRUE(receiver.WaitForBuffers(20));
   server_.Kill();
   ASSERT_TRUE(Eventually([&] { return sender.stat("messages-dropped") > 0; }));
