@@ -72,10 +72,10 @@ class NatsPipeline {
     return "";
   }
 
+  /// Returns the texts of the warnings since the last call.
+  std::vector<std::string> WarningTexts() { return bus_->Texts(GST_MESSAGE_WARNING); }
   /// Returns the number of warnings since the last call whose text contains `part`.
-  std::size_t Warnings(const std::string& part) {
-    return CountWith(part, bus_->Texts(GST_MESSAGE_WARNING));
-  }
+  std::size_t Warnings(const std::string& part) { return CountWith(part, WarningTexts()); }
 
   std::vector<Kept> buffers() const {
     const std::lock_guard lock(mutex_);
