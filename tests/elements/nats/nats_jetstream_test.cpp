@@ -41,42 +41,6 @@ class NatsJetStream : public NatsTest {
   std::string caps_;  // of the stream that Replay() read last
 };
 
-/// A durable consumer of r1.front. Another program made it before natssrc uses it.
-class DurableConsumer {
- public:
-  DurableConsumer(const std::string& url, std::int64_t ack_wait_ns, std::int64_t max_pending)
-      : client_(url) {
-    jsConsumerConfig config;
-    jsConsumerConfig_Init(&config);
-    config.Durable = "slam";
-    config.DeliverSubject = "slam-delivery";
-    config.FilterSubject = "r1.front";
-    config.AckPolicy = js_AckExplicit;
-    config.AckWait = ack_wait_ns;
-    config.MaxAckPending = max_pending;
-    EXPECT_EQ(js_AddConsumer(nullptr, client_.js(), "box", &config, nullptr, nullptr), NATS_OK);
-  }
-  /// Returns the number of unacknowledged messages that the server has sent more than once.
-  std::int64_t again() const { return Info()->NumRedelivered; }
-  /// Returns the number of unacknowledged messages that the server has sent.
-  std::int64_t unacknowledged() const { return Info()->NumAckPending; }
-  /// Returns the number of unacknowledged messages, including those that the server has not sent
-  /// yet.
-  std::uint64_t open() const {
-    const auto info = Info();
-    return info->NumPending + static_cast<std::uint64_t>(info->NumAckPending);
-  }
-
- private:
-  nats::ConsumerInfoPtr Info() const {
-    jsConsumerInfo* info = nullptr;
-    EXPECT_EQ(js_GetConsumerInfo(&info, client_.js(), "box", "slam", nullptr, nullptr), NATS_OK);
-    return nats::ConsumerInfoPtr(info);
-  }
-
-  const NatsClient client_;
-};
-
 /// Sends history queries to the source `n` until it has answered with everything up to the end.
 /// Each answer has at most `question.most_bytes` bytes.
 std::vector<Kept> AskForHistory(const NatsPipeline& receiver, gst::HistoryQuestion question,
