@@ -14,7 +14,6 @@
 namespace lidar::fleet {
 namespace {
 
-constexpr std::chrono::seconds kClientTimeout{2};
 constexpr std::size_t kMaxRequest = 8 << 10;
 constexpr int kBacklog = 16;
 /// Interval at which silent connections are closed, and at which a failed accept is repeated.
@@ -63,8 +62,10 @@ bool MustWait() { return errno == EAGAIN || errno == EWOULDBLOCK || errno == EIN
 
 }  // namespace
 
-MetricsServer::MetricsServer(const std::string& address, int port)
-    : listener_(Listen(address, port)),
+MetricsServer::MetricsServer(const std::string& address, int port,
+                             std::chrono::milliseconds client_timeout)
+    : client_timeout_(client_timeout),
+      listener_(Listen(address, port)),
       wake_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
       port_(PortOf(listener_.get())) {
   if (!wake_) throw std::runtime_error("cannot serve HTTP: no file descriptor is left");
@@ -119,7 +120,7 @@ void MetricsServer::Accept() {
     connections_.pop_front();
     ++cut_;
   }
-  connections_.push_back({std::move(socket), Clock::now() + kClientTimeout, "", "", 0});
+  connections_.push_back({std::move(socket), Clock::now() + client_timeout_, "", "", 0});
 }
 
 /// Receives or sends as much as is possible without waiting. Returns false once the connection is

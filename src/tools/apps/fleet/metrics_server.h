@@ -16,13 +16,15 @@
 namespace lidar::fleet {
 
 /// Serves all connections by a single thread, which does not wait for any client. A silent or slow
-/// client is disconnected after two seconds, or earlier if too many other clients connect.
+/// client is disconnected after the timeout, or earlier if too many other clients connect.
 class MetricsServer {
  public:
   static constexpr std::size_t kMaxConnections = 32;
+  static constexpr std::chrono::milliseconds kClientTimeout{2'000};
 
   /// `port` may be 0 for any free port. Throws std::runtime_error if the port is not free.
-  MetricsServer(const std::string& address, int port);
+  MetricsServer(const std::string& address, int port,
+                std::chrono::milliseconds client_timeout = kClientTimeout);
   ~MetricsServer();
   MetricsServer(const MetricsServer&) = delete;
   MetricsServer& operator=(const MetricsServer&) = delete;
@@ -48,6 +50,7 @@ class MetricsServer {
   bool Receive(Connection* connection);
   std::string AnswerTo(const std::string& request);
 
+  const std::chrono::milliseconds client_timeout_;
   tools::FileDescriptor listener_;
   tools::FileDescriptor wake_;  // an eventfd
   int port_ = 0;
