@@ -30,11 +30,11 @@ TEST_F(Ros2Transforms, TakesTransformsAsTheyAre) {
   ASSERT_TRUE(peer_->WaitForMatch(kPatience));
   ASSERT_TRUE(WaitForStat("publishers", 1));
   // A message is lost if it is sent before the two endpoints match. Therefore the test repeats it.
-  for (int i = 0; i < 600 && Stat("messages-empty") == 0; ++i) {
-    ASSERT_TRUE(peer_->Publish(PeerTransforms{}));
+  ASSERT_TRUE(Eventually([&] {
+    EXPECT_TRUE(peer_->Publish(PeerTransforms{}));
     g_usleep(50'000);
-  }
-  ASSERT_GT(Stat("messages-empty"), 0u);
+    return Stat("messages-empty") > 0;
+  }));
   ASSERT_TRUE(peer_->Publish(Transforms("odom", "base", 2.5, 5)));
   const BufferPtr buffer = Pull();
   const auto bytes = BytesOf(buffer.get());
@@ -63,11 +63,11 @@ TEST_F(Ros2Transforms, WhatIsLargerThanTransformsAreIsDamaged) {
     return peer_->Publish(PeerBytes{cdr::WriteTransforms(cdr::Transforms(count, one))});
   };
   // A message is lost if it is sent before the two endpoints match. Therefore the test repeats it.
-  for (int i = 0; i < 600 && Stat("messages-damaged") == 0; ++i) {
-    ASSERT_TRUE(publish(15'000));
+  ASSERT_TRUE(Eventually([&] {
+    EXPECT_TRUE(publish(15'000));
     g_usleep(50'000);
-  }
-  ASSERT_GT(Stat("messages-damaged"), 0u);
+    return Stat("messages-damaged") > 0;
+  }));
   const guint64 kept = Stat("bytes");
   EXPECT_LE(kept, Stat("messages") << 20);
   ASSERT_TRUE(publish(5'000));
@@ -140,17 +140,17 @@ TEST_F(Ros2Transforms, CloudsGoToTheFrameThatTransformsLeadTo) {
   PeerCloud cloud = TestCloud(1, 1);
   const float x = 4;
   std::memcpy(cloud.data.data(), &x, sizeof x);
-  ASSERT_TRUE(peer_->Publish(cloud));
-  // The cloud waits for a transform with its own time or a later one. A transform is lost if it is
-  // sent before the two endpoints match. Therefore the test repeats the transforms.
+  // The cloud waits for a transform with its own time or a later one. A message is lost if it is
+  // sent before the two endpoints match. Therefore the test repeats all of them.
   BufferPtr buffer;
-  for (int i = 0; i < 600 && !buffer; ++i) {
+  ASSERT_TRUE(Eventually([&] {
+    EXPECT_TRUE(peer_->Publish(cloud));
     for (const int later : {0, 1})
-      ASSERT_TRUE(moving.Publish(Transforms("map", "base", 100 + later, cloud.header.sec + later)));
+      EXPECT_TRUE(moving.Publish(Transforms("map", "base", 100 + later, cloud.header.sec + later)));
     g_usleep(50'000);
     buffer.reset(gst_harness_try_pull(h_.get()));
-  }
-  ASSERT_TRUE(buffer);
+    return buffer != nullptr;
+  }));
   float moved = 0;
   std::memcpy(&moved, BytesOf(buffer.get()).data(), sizeof moved);
   // The moving transform is at 100 m + 0.123 s * 1 m/s.
