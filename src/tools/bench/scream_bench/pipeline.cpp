@@ -16,9 +16,12 @@ struct MainLoopUnref {
 
 struct Runner {
   std::string program;
+  GstElement* pipeline;
+  Duration duration;
   const std::function<void()>* tick;
   const std::function<void()>* end;
   std::unique_ptr<GMainLoop, MainLoopUnref> loop{g_main_loop_new(nullptr, FALSE)};
+  bool has_played = false;
   bool ending = false;
   int result = 0;
 };
@@ -39,6 +42,27 @@ void End(Runner* runner) {
         return G_SOURCE_REMOVE;
       },
       runner);
+}
+
+gboolean OnTick(gpointer data) {
+  auto* runner = static_cast<Runner*>(data);
+  if (!runner->has_played) {
+    GstState state = GST_STATE_NULL;
+    gst_element_get_state(runner->pipeline, &state, nullptr, 0);
+    if (state != GST_STATE_PLAYING) return G_SOURCE_CONTINUE;
+    runner->has_played = true;
+    if (runner->duration < Duration::max()) {
+      g_timeout_add(
+          static_cast<guint>(Milliseconds(runner->duration)),
+          [](gpointer end) -> gboolean {
+            End(static_cast<Runner*>(end));
+            return G_SOURCE_REMOVE;
+          },
+          runner);
+    }
+  }
+  (*runner->tick)();
+  return G_SOURCE_CONTINUE;
 }
 
 gboolean OnMessage(GstBus*, GstMessage* message, gpointer data) {
@@ -63,7 +87,7 @@ void LinkPads(GstElement* from, const char* from_pad, GstElement* to, const char
 
 int RunPipeline(GstElement* pipeline, const std::string& program, Duration duration,
                 const std::function<void()>& every_100_ms, const std::function<void()>& end) {
-  Runner runner{program, &every_100_ms, &end};
+  Runner runner{program, pipeline, duration, &every_100_ms, &end};
   GstBus* bus = gst_element_get_bus(pipeline);
   const guint watch = gst_bus_add_watch(bus, OnMessage, &runner);
   gst_object_unref(bus);
@@ -74,22 +98,7 @@ int RunPipeline(GstElement* pipeline, const std::string& program, Duration durat
   const guint interrupt = g_unix_signal_add(SIGINT, on_signal, &runner);
   const guint terminate = g_unix_signal_add(SIGTERM, on_signal, &runner);
   constexpr guint kTickMs = 100;
-  const guint tick = g_timeout_add(
-      kTickMs,
-      [](gpointer data) -> gboolean {
-        (*static_cast<Runner*>(data)->tick)();
-        return G_SOURCE_CONTINUE;
-      },
-      &runner);
-  if (duration < Duration::max()) {
-    g_timeout_add(
-        static_cast<guint>(Milliseconds(duration)),
-        [](gpointer data) -> gboolean {
-          End(static_cast<Runner*>(data));
-          return G_SOURCE_REMOVE;
-        },
-        &runner);
-  }
+  const guint tick = g_timeout_add(kTickMs, OnTick, &runner);
   gst_element_set_state(pipeline, GST_STATE_PLAYING);
   g_main_loop_run(runner.loop.get());
   for (const guint source : {watch, interrupt, terminate, tick}) g_source_remove(source);

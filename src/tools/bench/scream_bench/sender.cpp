@@ -121,13 +121,14 @@ GstPad* Sender::AddSinkPad(GstElement* sink) {
   return pad;
 }
 
-/// Sends frames at a constant interval of GStreamer's system clock, which is monotonic.
+/// Sends frames at a constant interval of GStreamer's system clock, which is monotonic. Sends at
+/// least one frame.
 void Sender::SendFrames() {
   const gst::ElementPtr keep(GST_ELEMENT(gst_object_ref(pipeline_.get())));
   GstClock* clock = gst_element_get_clock(pipeline_.get());
   const GstClockTime start = gst_clock_get_time(clock);
   const GstClockTime base = gst_element_get_base_time(pipeline_.get());
-  for (std::uint64_t frame = 0; !stop_; ++frame) {
+  for (std::uint64_t frame = 0; frame == 0 || !stop_; ++frame) {
     const GstClockTime due = start + frame * static_cast<std::uint64_t>(sizes_.period().count());
     GstClockID id = gst_clock_new_single_shot_id(clock, due);
     gst_clock_id_wait(id, nullptr);
@@ -154,9 +155,6 @@ gst::StructurePtr Sender::Stats() const {
 void Sender::Tick() {
   const Duration now = UnixNow();
   if (started_ == Duration{0}) {
-    GstState state = GST_STATE_NULL;
-    gst_element_get_state(pipeline_.get(), &state, nullptr, 0);
-    if (state != GST_STATE_PLAYING) return;
     started_ = now;
     next_line_ = now + std::chrono::seconds{1};
     thread_ = std::thread([this] { SendFrames(); });
