@@ -59,8 +59,9 @@ start() {
   until eval "$1"; do kill -0 $! || { cat output >&2; exit 1; }; sleep 0.05; done
 }
 
-# The source is not live, so it waits while the sender's queue is full, and no slice is skipped.
-send="rtplidarpay ! screamsink host=127.0.0.1 port=${ports[0]} start-bitrate=20000000"
+# The source is not live, so it waits while the sender's queue is full. No slice is skipped, because
+# none waits longer than max-queue-delay.
+send="rtplidarpay ! screamsink host=127.0.0.1 port=${ports[0]} start-bitrate=20000000 max-queue-delay=30000000000"
 bound() { grep -qs "$(printf ':%04X ' "${ports[0]}")" /proc/net/udp /proc/net/udp6; }
 # shellcheck disable=SC2086
 start bound "${play[@]}" screamsrc address=127.0.0.1 port="${ports[0]}" eos-on-bye=true ! rtplidardepay ! $decoder=scream

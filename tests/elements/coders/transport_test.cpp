@@ -49,10 +49,12 @@ TEST_P(Transport, GoesThroughSrtpUnderCongestionControl) {
   gst_element_get_state(in.get(), nullptr, nullptr, test::kPatience_ns);
   const guint port = test::PortOf(in.get());
   EXPECT_NE(port, 0U);
-  // The source is not live, so it waits while the sender's queue is full, and nothing is dropped.
+  // The source is not live, so it waits while the sender's queue is full. Nothing is dropped,
+  // because no frame waits longer than max-queue-delay.
   test::Pipeline sender(
       Sender("num-buffers=24") +
-      " ! screamsink start-bitrate=20000000 host=127.0.0.1 port=" + std::to_string(port) + key);
+      " ! screamsink max-queue-delay=30000000000 start-bitrate=20000000 host=127.0.0.1 port=" +
+      std::to_string(port) + key);
   sender.Play();
   EXPECT_TRUE(sender.Ends());
   const ElementPtr dec = receiver.Get("dec");
