@@ -45,8 +45,8 @@ check "record.sh takes a folder with a space" "$root/pipelines/record.sh" --scan
 check "and writes there" counts "$folder/my scans" "scan*" 1
 if gst-inspect-1.0 mcapsink >/dev/null 2>&1; then
   for format in slices clouds; do
-    check "record.sh records $format" "$root/pipelines/record.sh" --seconds 2.5 --piece 1 --format $format \
-      --output "$folder/$format" "$small"
+    check "record.sh records $format" "$root/pipelines/record.sh" --seconds 600 --piece 1 --format $format \
+      --output "$folder/$format" "$small num-buffers=200"
     check "$format come in pieces" [ -s "$folder/$format/rec-00001.mcap" ]
   done
   count_pieces() { find "$folder/slices" -name 'rec-*.mcap' | wc -l; }
