@@ -39,7 +39,7 @@ one_end() {
   exec gst-launch-1.0 -m \
     rtpbin name=rtp latency=50 \
     videotestsrc is-live=true pattern=zone-plate kx2=30 ky2=20 kt=3 ! video/x-raw,width=640,height=480,framerate=30/1 ! \
-    openh264enc complexity=low rate-control=bitrate gop-size=300 ! bitrateadapter min=200000 max=3000000 ! \
+    openh264enc complexity=low rate-control=bitrate gop-size=30 ! bitrateadapter min=200000 max=3000000 ! \
     h264parse ! rtph264pay pt=96 config-interval=-1 ! rtp.send_rtp_sink_0 \
     rtp.send_rtp_src_0 ! tx.sink_0 \
     screamtx name=tx max-bitrate=3500000 stats-interval=1000000000 ! \
@@ -61,6 +61,11 @@ one_end B $((port + 2)) $((port + 3)) "$port" $((port + 1)) & b=$!
 playing "$work/A" $a
 playing "$work/B" $b
 sleep "$duration"
+decoded() { grep -q '"progress\|progress,' "$work/$1"; }
+for ((i = 0; i < 600; ++i)); do
+  ! { decoded A && decoded B; } && kill -0 $a $b 2>/dev/null || break
+  sleep 0.1
+done
 kill -INT $a $b 2>/dev/null || true
 until_ended $a $b
 
@@ -81,7 +86,7 @@ report() {
 failed=0
 for name in A B; do
   report "$name" || { echo "No feedback reached $name." >&2; failed=1; }
-  grep -q '"progress\|progress,' "$work/$name" || { echo "$name decoded nothing." >&2; failed=1; }
+  decoded "$name" || { echo "$name decoded nothing." >&2; failed=1; }
   grep -m5 -E 'ERROR|loop detected' "$work/$name" >&2 && failed=1
 done
 exit "$failed"

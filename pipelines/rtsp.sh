@@ -35,8 +35,8 @@ done
 
 # view PROTOCOL: prints how many clouds arrived.
 view() {
-  timeout 60 gst-launch-1.0 -v rtspsrc location="$address" protocols="$1" latency=100 ! rtplidardepay ! lidardec ! \
-    fakesink num-buffers="$clouds" sync=false silent=false >"$folder/$1" 2>&1 || true
+  timeout 600 gst-launch-1.0 -v rtspsrc location="$address" protocols="$1" latency=100 timeout=0 tcp-timeout=0 ! \
+    rtplidardepay ! lidardec ! fakesink num-buffers="$clouds" sync=false silent=false >"$folder/$1" 2>&1 || true
   grep -c 'last-message = chain' "$folder/$1" || true
 }
 status=0
