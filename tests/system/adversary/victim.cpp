@@ -22,6 +22,7 @@
 #include "gst/common/refs.h"
 #include "src/base/crc.h"
 #include "tests/support/metronome.h"
+#include "tests/support/patience.h"
 
 namespace {
 
@@ -127,8 +128,9 @@ double CpuSeconds() {
 }
 
 /// Forks, as an application does that uses Python's subprocess. Returns the exit code of the child,
-/// or -1 if the child did not exit normally within 5 s. If `becomes_another` is true, the child
-/// executes another program, whose exit code is the number of network sockets that it inherited.
+/// or -1 if the child did not exit normally within kPatience. If `becomes_another` is true, the
+/// child executes another program, whose exit code is the number of network sockets that it
+/// inherited.
 int ForkAndWait(bool becomes_another) {
   std::fflush(stdout);
   const pid_t child = fork();
@@ -143,12 +145,9 @@ int ForkAndWait(bool becomes_another) {
           nullptr);
     _exit(127);
   }
-  for (int i = 0; i < 500; ++i) {
-    int status = 0;
-    if (waitpid(child, &status, WNOHANG) == child)
-      return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    usleep(10'000);
-  }
+  int status = 0;
+  if (lidar::test::Eventually([&] { return waitpid(child, &status, WNOHANG) == child; }))
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   kill(child, SIGKILL);
   waitpid(child, nullptr, 0);
   return -1;
@@ -265,7 +264,7 @@ class Victim {
   long FollowClock(int port) {
     const std::unique_ptr<GstClock, Unref> clock(
         gst_net_client_clock_new("net", "127.0.0.1", port, 0));
-    if (!gst_clock_wait_for_sync(clock.get(), 5 * GST_SECOND)) return 0;
+    if (!gst_clock_wait_for_sync(clock.get(), lidar::test::kPatience_ns)) return 0;
     SetState(GST_STATE_NULL);
     gst_pipeline_use_clock(GST_PIPELINE(pipeline_.get()), clock.get());
     SetState(GST_STATE_PLAYING);
