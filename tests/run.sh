@@ -101,8 +101,11 @@ build() {
   # is used instead.
   if [ -z "${CC_LD:-}${CXX_LD:-}" ] && command -v ld.lld >/dev/null; then linker=(CC_LD=lld CXX_LD=lld); fi
   echo "== build $(basename "$dir") (${SECONDS}s)"
-  [ -f "$dir/build.ninja" ] || env "${linker[@]}" meson setup "$dir" "$root" -Dcpp_args=-g1 -Dwerror=true --unity on -Dunity_size=40 "$@" >"$dir.log" 2>&1 ||
-    { tail -20 "$dir.log"; return 1; }
+  if [ -f "$dir/build.ninja" ]; then
+    ninja -C "$dir" build.ninja  # a change of a meson.build may have added targets
+  else
+    env "${linker[@]}" meson setup "$dir" "$root" -Dcpp_args=-g1 -Dwerror=true --unity on -Dunity_size=40 "$@"
+  fi >"$dir.log" 2>&1 || { tail -20 "$dir.log"; return 1; }
   local wanted=()
   # shellcheck disable=SC2086
   [ "$needed_by" = all ] || mapfile -t wanted < <(targets "$dir" $needed_by)
