@@ -56,8 +56,8 @@ bool Subscriber::Connect(std::string* why) {
     if (connection_->state().connected())
       natsConnection_FlushTimeout(connection_->get(), Connection::kConnectTimeoutMs);
   }
-  // A closed connection is not an error here, because Next() reports it.
-  if (status == NATS_OK || status == NATS_CONNECTION_CLOSED) return true;
+  // A closed connection is not an error here, because Next() reports it or connects again.
+  if (status == NATS_OK || natsConnection_IsClosed(connection_->get())) return true;
   *why = ErrorText(status);
   return false;
 }

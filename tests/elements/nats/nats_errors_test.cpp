@@ -1,12 +1,29 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Tests of natssink and natssrc with invalid messages, wrong settings, and servers that need
 // credentials.
+#include <dlfcn.h>
+
+#include <atomic>
 #include <cstdlib>
 #include <map>
 
 #include "ext/nats/stream_format.h"
 #include "tests/elements/nats/nats_pipeline.h"
 #include "tests/elements/nats/nats_stranger.h"
+
+namespace {
+std::atomic<bool> limits_come_late{false};
+}  // namespace
+
+/// Replaces libnats' function in this program and in the plugins that it loads. While
+/// `limits_come_late` is true, waits until the subscription's connection is closed.
+extern "C" __attribute__((visibility("default"))) natsStatus natsSubscription_SetPendingLimits(
+    natsSubscription* subscription, int messages, int bytes) {
+  static const auto next = reinterpret_cast<decltype(&natsSubscription_SetPendingLimits)>(
+      dlsym(RTLD_NEXT, "natsSubscription_SetPendingLimits"));
+  while (limits_come_late && natsSubscription_IsValid(subscription)) g_usleep(1'000);
+  return next(subscription, messages, bytes);
+}
 
 namespace lidar::test {
 namespace {
@@ -198,6 +215,23 @@ TEST_F(NatsErrors, AServerThatTakesConnectionsAndIsSilentIsTriedAgain) {
   server_.Thaw();
   EXPECT_TRUE(receiver.WaitForBuffers(1));
   EXPECT_EQ(sender.stat("refusals"), 0U);
+}
+
+/// libnats gives a silent server up while natssrc subscribes, as on a machine that stops its
+/// thread.
+TEST_F(NatsErrors, AServerThatIsSilentDuringASubscriptionIsTriedAgain) {
+  server_.Start();
+  server_.Freeze();
+  NatsPipeline receiver("natssrc name=n" + At() + "! fakesink name=see sync=false");
+  limits_come_late = true;
+  const bool plays = receiver.Play();
+  limits_come_late = false;
+  ASSERT_TRUE(plays);
+  EXPECT_NE(receiver.WaitForWarning("No NATS server answers"), "");
+  server_.Thaw();
+  ASSERT_TRUE(Eventually([&] { return server_.Subscriptions("lidar") > 0; }));
+  PublishSlices(8, At());
+  EXPECT_TRUE(receiver.WaitForBuffers(8));
 }
 
 TEST_F(NatsErrors, AStreamThatReachesNoServerEndsWithAnError) {
