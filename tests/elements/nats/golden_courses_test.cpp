@@ -11,7 +11,7 @@
 #include "gst/common/history_query.h"
 #include "src/base/crc.h"
 #include "tests/elements/nats/nats_client.h"
-#include "tests/elements/nats/nats_server.h"
+#include "tests/elements/nats/nats_pipeline.h"
 
 namespace lidar::test {
 namespace {
@@ -404,12 +404,8 @@ void SourceCourse(Course& c) {
 
 /// Sends a history query to a source and notes the answer.
 void NotePast(Course& c, const gst::HistoryQuestion& question) {
-  const gst::QueryPtr query = gst::NewHistoryQuery(question);
-  EXPECT_TRUE(Eventually([&] {
-    return gst_pad_peer_query(c.harness()->sinkpad, query.get()) &&
-           !gst::ParseHistoryAnswer(query.get()).unanswered;
-  }));
-  const gst::HistoryAnswer answer = gst::ParseHistoryAnswer(query.get());
+  const gst::PadPtr src(gst_pad_get_peer(c.harness()->sinkpad));
+  const gst::HistoryAnswer answer = AskForPast(src.get(), question);
   std::string line =
       Line("past from ", answer.from, " to ", answer.to, ", then ", answer.position,
            answer.ended ? " at the end" : "", ", damaged ", answer.damaged, ", buffers");

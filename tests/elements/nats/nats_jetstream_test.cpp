@@ -48,13 +48,7 @@ std::vector<Kept> AskForHistory(const NatsPipeline& receiver, gst::HistoryQuesti
   const gst::PadPtr pad(gst_element_get_static_pad(receiver.nats(), "src"));
   std::vector<Kept> out;
   do {
-    const gst::QueryPtr query = gst::NewHistoryQuery(question);
-    if (!Eventually([&] {
-          if (!gst_pad_query(pad.get(), query.get())) return false;
-          *last = gst::ParseHistoryAnswer(query.get());
-          return !last->unanswered;
-        }))
-      break;
+    *last = AskForPast(pad.get(), question);
     for (const gst::SamplePtr& sample : last->samples)
       out.push_back(Keep(gst_sample_get_buffer(sample.get())));
     question.time = GST_CLOCK_TIME_NONE;

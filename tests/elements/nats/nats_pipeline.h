@@ -7,6 +7,7 @@
 #include <mutex>
 #include <optional>
 
+#include "gst/common/history_query.h"
 #include "tests/elements/mcap/recording.h"
 #include "tests/elements/nats/nats_server.h"
 #include "tests/support/patience.h"
@@ -138,6 +139,18 @@ inline std::vector<Kept> PublishSlices(int count, const std::string& where) {
   sender.Play();
   EXPECT_EQ(sender.WaitForEnd(), "");
   return sender.buffers();
+}
+
+/// Sends a history query to the source pad `src` until the server answers.
+inline gst::HistoryAnswer AskForPast(GstPad* src, const gst::HistoryQuestion& question) {
+  gst::HistoryAnswer answer;
+  EXPECT_TRUE(Eventually([&] {
+    const gst::QueryPtr query = gst::NewHistoryQuery(question);
+    if (!gst_pad_query(src, query.get())) return false;
+    answer = gst::ParseHistoryAnswer(query.get());
+    return !answer.unanswered;
+  }));
+  return answer;
 }
 
 /// Plays a natssrc and waits until the server has its subscription. The natssrc receives every

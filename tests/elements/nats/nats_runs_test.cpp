@@ -372,12 +372,7 @@ gst::HistoryAnswer Past(const std::string& where, const gst::HistoryQuestion& qu
   NatsPipeline receiver("natssrc name=n" + where + "! fakesink name=see");
   receiver.Play();
   const gst::PadPtr pad(gst_element_get_static_pad(receiver.nats(), "src"));
-  const gst::QueryPtr query = gst::NewHistoryQuery(question);
-  EXPECT_TRUE(Eventually([&] {
-    return gst_pad_query(pad.get(), query.get()) &&
-           !gst::ParseHistoryAnswer(query.get()).unanswered;
-  }));
-  return gst::ParseHistoryAnswer(query.get());
+  return AskForPast(pad.get(), question);
 }
 
 TEST_F(NatsRuns, ThePastCountsWhatIsDamaged) {

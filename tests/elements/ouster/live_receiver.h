@@ -70,24 +70,18 @@ class Receiver {
     }
   }
   bool AwaitConnected(bool connected) {
-    gboolean is = FALSE;
-    do {
+    for (;;) {
       const gst::MessagePtr message = Await("ouster-connection-changed");
-      if (!message) return false;
-      gst_structure_get_boolean(gst_message_get_structure(message.get()), "connected", &is);
-    } while ((is != FALSE) != connected);
-    return true;
+      if (!message || IsConnected(message.get()) == connected) return message != nullptr;
+    }
   }
   /// Lets time pass on the test clock until the element posts that the sensor is disconnected.
   bool PassUntilDisconnected() {
     return Eventually([this] {
       Pass(GST_SECOND);
       const gst::MessagePtr message = bus_->Pop(GST_MESSAGE_ELEMENT);
-      gboolean is = TRUE;
       return message && gst_message_has_name(message.get(), "ouster-connection-changed") &&
-             gst_structure_get_boolean(gst_message_get_structure(message.get()), "connected",
-                                       &is) &&
-             is == FALSE;
+             !IsConnected(message.get());
     });
   }
   /// Waits until the element has posted that its latency changed. Returns false if that takes too
@@ -108,6 +102,12 @@ class Receiver {
   guint16 port() const { return port_; }
 
  private:
+  /// Returns the state that an ouster-connection-changed message reports.
+  static bool IsConnected(GstMessage* message) {
+    gboolean is = FALSE;
+    EXPECT_TRUE(gst_structure_get_boolean(gst_message_get_structure(message), "connected", &is));
+    return is != FALSE;
+  }
   gst::BufferPtr Pull(gint64 end) {
     for (;;) {
       const bool ended = GST_PAD_IS_EOS(harness_->sinkpad);
