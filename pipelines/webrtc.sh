@@ -83,7 +83,7 @@ awk -v high="$high" -v low="$low" -v part="$part" '
   $2 == "there:" { there = value("scans-complete") }
   $2 == "back:" { back = value("scans-complete") }
   END {
-    if (!n[0] || !n[1] || !n[2]) { fail("the call was too short", there && back && reports ? 3 : 1); exit failed }
+    if (!n[0] || !n[1] || !n[2]) { fail("the call was too short", 1); exit 1 }
     for (p = 0; p < 3; ++p) { targets[p] /= n[p]; rates[p] /= n[p] }
     printf "%g, %g, %g Mbit/s: mean target %.2f, %.2f, %.2f; %d scans came there, %d back\n", high, low, high,
       targets[0], targets[1], targets[2], there, back

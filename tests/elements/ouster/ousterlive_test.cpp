@@ -162,7 +162,7 @@ TEST(OusterLive, DamagedPacketsAreToldByTheirCrc) {
   EXPECT_TRUE(receiver.PullUntil(
       [&](GstBuffer*) { return refused() + stat("dropped-by-kernel") >= corrupted; }));
   EXPECT_LE(refused(), corrupted);
-  EXPECT_GE(stat("packets-damaged") * 10, refused() * 9);
+  EXPECT_GE(stat("packets-damaged") * 25, refused() * 24);
 }
 
 guint64 Reconnects(Receiver& receiver) { return StatOf(receiver.source(), "reconnects"); }
@@ -314,8 +314,7 @@ TEST(OusterLive, APauseIsNoLossAndLeavesNothingOldBehind) {
     EXPECT_GT(gst_lidar_buffer_get_capture_time(buffer.get()), resumed - 200 * GST_MSECOND) << i;
   }
   EXPECT_EQ(StatOf(receiver.source(), "packets-lost"), lost);
-  // If the machine stops the sensor for a second, the sensor is silent, and then its clock jumps.
-  EXPECT_TRUE(Reconnects(receiver) == 0 || StatOf(receiver.source(), "clock-jumps") > 0);
+  EXPECT_EQ(Reconnects(receiver), 0U);
 }
 
 TEST(OusterLive, WaitsForASensorThatIsSwitchedOffForAWhile) {
